@@ -1,0 +1,226 @@
+//! The CPU backend: blocks of episodes over all cores, each block in the widest lanes that the processor has.
+
+use crate::campaign::Campaign;
+use crate::draw::{Episode, draw};
+use crate::model::episode::{AgentOutcome, Controller, Model, Snapshot};
+use crate::model::lanes::{Lane, MAX_WIDTH, Real};
+use crate::synthesis::LoopGains;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Number format of the episode loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Double: the reference.
+    F64,
+    /// Single: the default, in SIMD lanes where the processor has them.
+    F32,
+}
+
+/// How single-precision episodes are laid side by side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Simd {
+    /// One at a time, without fused multiply-add.
+    Scalar,
+    /// Eight, with AVX2 and FMA.
+    Avx2,
+    /// Sixteen, with AVX-512 F and DQ.
+    Avx512,
+}
+
+impl Simd {
+    /// Every layout, narrowest first.
+    pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
+
+    /// Whether this processor can run it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Self::Scalar => true,
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            self == Self::Scalar
+        }
+    }
+
+    /// The widest layout of this processor.
+    #[must_use]
+    pub fn widest() -> Self {
+        Self::ALL
+            .into_iter()
+            .rev()
+            .find(|simd| simd.is_available())
+            .unwrap_or(Self::Scalar)
+    }
+}
+
+/// A campaign's controllers, ready to fly in one precision and layout.
+pub struct Cpu(Loop);
+
+enum Loop {
+    F64(Flyer<f64>),
+    F32(Flyer<f32>, Simd),
+}
+
+/// The loop of a campaign in one precision, and its controllers by name and order.
+struct Flyer<R> {
+    campaign: Campaign,
+    model: Model<R>,
+    controllers: Vec<Controller<R>>,
+}
+
+/// One episode: its draw and, `[controller][agent]`, how it went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flown {
+    /// What was drawn.
+    pub episode: Episode,
+    /// How it went.
+    pub outcomes: Vec<Vec<AgentOutcome>>,
+}
+
+impl Cpu {
+    /// Prepares a campaign: tabulates the references and rounds the gains; `gains` are those of each of the campaign's
+    /// controllers on the position and the attitude channels. A layout that the processor lacks is replaced by the widest
+    /// it has; the second value says which is used (`None` in double precision).
+    #[must_use]
+    pub fn new(
+        campaign: &Campaign,
+        gains: &[[LoopGains; 2]],
+        precision: Precision,
+        simd: Option<Simd>,
+    ) -> Self {
+        Self(match precision {
+            Precision::F64 => Loop::F64(Flyer::new(campaign, gains)),
+            Precision::F32 => {
+                let simd = simd
+                    .filter(|simd| simd.is_available())
+                    .unwrap_or_else(Simd::widest);
+                Loop::F32(Flyer::new(campaign, gains), simd)
+            }
+        })
+    }
+
+    /// The layout in use; `None` in double precision.
+    #[must_use]
+    pub fn simd(&self) -> Option<Simd> {
+        match self.0 {
+            Loop::F64(_) => None,
+            Loop::F32(_, simd) => Some(simd),
+        }
+    }
+
+    /// Flies a range of episodes under every controller, in order; `done` is told of each finished block's episodes.
+    #[must_use]
+    pub fn fly(&self, episodes: Range<u32>, done: &(dyn Fn(u32) + Sync)) -> Vec<Flown> {
+        match &self.0 {
+            Loop::F64(flyer) => flyer.fly::<f64>(episodes, done),
+            Loop::F32(flyer, simd) => match simd {
+                Simd::Scalar => flyer.fly::<f32>(episodes, done),
+                #[cfg(target_arch = "x86_64")]
+                Simd::Avx2 => flyer.fly::<crate::model::simd::F32x8>(episodes, done),
+                #[cfg(target_arch = "x86_64")]
+                Simd::Avx512 => flyer.fly::<crate::model::simd::F32x16>(episodes, done),
+                #[cfg(not(target_arch = "x86_64"))]
+                _ => flyer.fly::<f32>(episodes, done),
+            },
+        }
+    }
+
+    /// Flies one episode under one controller and shows it every `every` steps.
+    #[must_use]
+    pub fn trace(
+        &self,
+        episode: u32,
+        controller: usize,
+        every: u32,
+    ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
+        match &self.0 {
+            Loop::F64(flyer) => flyer.trace::<f64>(episode, controller, every),
+            Loop::F32(flyer, simd) => match simd {
+                Simd::Scalar => flyer.trace::<f32>(episode, controller, every),
+                #[cfg(target_arch = "x86_64")]
+                Simd::Avx2 => flyer.trace::<crate::model::simd::F32x8>(episode, controller, every),
+                #[cfg(target_arch = "x86_64")]
+                Simd::Avx512 => {
+                    flyer.trace::<crate::model::simd::F32x16>(episode, controller, every)
+                }
+                #[cfg(not(target_arch = "x86_64"))]
+                _ => flyer.trace::<f32>(episode, controller, every),
+            },
+        }
+    }
+}
+
+impl<R: Real> Flyer<R> {
+    fn new(campaign: &Campaign, gains: &[[LoopGains; 2]]) -> Self {
+        let controllers = gains.iter().map(Controller::new).collect();
+        Self {
+            campaign: campaign.clone(),
+            model: Model::new(campaign),
+            controllers,
+        }
+    }
+
+    fn fly<L: Lane<Real = R>>(
+        &self,
+        episodes: Range<u32>,
+        done: &(dyn Fn(u32) + Sync),
+    ) -> Vec<Flown> {
+        let blocks: Vec<Range<u32>> = blocks(episodes);
+        blocks
+            .into_par_iter()
+            .flat_map_iter(|block| {
+                let count = block.len() as u32;
+                let episodes: Vec<Episode> =
+                    block.map(|episode| draw(&self.campaign, episode)).collect();
+                let mut flown: Vec<Flown> = episodes
+                    .iter()
+                    .map(|episode| Flown {
+                        episode: episode.clone(),
+                        outcomes: Vec::new(),
+                    })
+                    .collect();
+                for controller in &self.controllers {
+                    let outcomes = episodes
+                        .chunks(L::WIDTH)
+                        .flat_map(|part| self.model.simulate::<L>(controller, part));
+                    for (flown, outcome) in flown.iter_mut().zip(outcomes) {
+                        flown.outcomes.push(outcome);
+                    }
+                }
+                done(count);
+                flown
+            })
+            .collect()
+    }
+
+    fn trace<L: Lane<Real = R>>(
+        &self,
+        episode: u32,
+        controller: usize,
+        every: u32,
+    ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
+        self.model.trace::<L>(
+            &self.controllers[controller],
+            &draw(&self.campaign, episode),
+            every,
+        )
+    }
+}
+
+/// Ranges of at most [`MAX_WIDTH`] episodes.
+fn blocks(episodes: Range<u32>) -> Vec<Range<u32>> {
+    let width = MAX_WIDTH as u32;
+    (episodes.start..episodes.end)
+        .step_by(MAX_WIDTH)
+        .map(|first| first..first.saturating_add(width).min(episodes.end))
+        .collect()
+}

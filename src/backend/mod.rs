@@ -1,0 +1,3 @@
+//! Where episodes are flown: draws in, outcomes out.
+
+pub mod cpu;

@@ -1,0 +1,508 @@
+//! The campaign file as it is written: one struct per TOML table, nothing checked but names and types.
+//! [`super::Campaign`] is what the rest of the program sees.
+
+use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A campaign: which closed loop flies, what disturbs it, how often, and what counts as failure.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampaignFile {
+    /// Name of the campaign and of its output folder.
+    pub name: String,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Number of episodes.
+    pub episodes: u32,
+    /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned" or a name under `[synthesis.named]`.
+    pub controllers: Option<Vec<String>>,
+    /// Duration and step.
+    pub time: TimeFile,
+    /// The plant.
+    pub agent: AgentFile,
+    /// Where the agents are to go.
+    pub reference: ReferenceFile,
+    /// How the gains are found.
+    pub synthesis: SynthesisFile,
+    /// Initial errors.
+    pub initial: Option<InitialFile>,
+    /// Coupling between the agents of a team, (10).
+    pub coupling: Option<CouplingFile>,
+    /// External disturbances d1, summed.
+    #[serde(default)]
+    pub disturbance: Vec<DisturbanceFile>,
+    /// Actuator and sensor faults.
+    #[serde(default)]
+    pub fault: Vec<FaultFile>,
+    /// What counts as failure.
+    pub verdict: Option<VerdictFile>,
+    /// Conditions on the result; one that does not hold makes the run exit with 4.
+    #[serde(default)]
+    pub require: Vec<RequireFile>,
+}
+
+/// `[time]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeFile {
+    /// Length of an episode, s.
+    pub duration_s: f64,
+    /// Integration step, s.
+    pub step_s: f64,
+    /// Start of the metrics, s (default 0).
+    pub settle_s: Option<f64>,
+}
+
+/// `[agent]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AgentFile {
+    /// The plant.
+    pub kind: AgentKind,
+    /// Agents in an episode, coupled through `[coupling]` (default 1).
+    pub team: Option<u32>,
+    /// What the command acts through (default "full").
+    pub actuation: Option<ActuationKind>,
+    /// True mass over modelled mass (default 1).
+    pub mass_scale: Option<Value>,
+    /// True inertia over modelled inertia (default 1).
+    pub inertia_scale: Option<Value>,
+    /// Modelled mass, kg (default 2).
+    pub mass_kg: Option<f64>,
+    /// Modelled principal inertias, kg m^2 (default 1.25, 1.25, 2.2).
+    pub inertia_kg_m2: Option<[f64; 3]>,
+    /// Translational damping, N s/m (default 0.01).
+    pub drag_n_s_m: Option<f64>,
+    /// Rotational damping, N m s (default 0.012).
+    pub angular_drag_n_m_s: Option<f64>,
+    /// Gravity, m/s^2 (default 9.81).
+    pub gravity_m_s2: Option<f64>,
+    /// Bandwidth of the attitude command filter, rad/s (default 20; thrust only).
+    pub command_filter_rad_s: Option<f64>,
+    /// Largest thrust, N (default 80; thrust only).
+    pub max_thrust_n: Option<f64>,
+    /// Largest torque about each axis, N m (default 60; thrust only).
+    pub max_torque_n_m: Option<f64>,
+    /// Largest commanded roll and pitch, rad (default 1; thrust only).
+    pub max_tilt_rad: Option<f64>,
+}
+
+/// The plants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum AgentKind {
+    /// The quadrotor of (3).
+    Uav,
+}
+
+/// What a UAV's command acts through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ActuationKind {
+    /// Six independent forces and torques.
+    Full,
+    /// Thrust along the body axis and three torques, within limits.
+    Thrust,
+}
+
+/// `[reference]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceFile {
+    /// Form of the reference.
+    pub kind: ReferenceKind,
+    /// Sinusoid: mean, m or rad.
+    pub center: Option<Numbers>,
+    /// Sinusoid: amplitude, m or rad.
+    pub amplitude: Option<Numbers>,
+    /// Sinusoid: angular frequency, rad/s.
+    pub frequency_rad_s: Option<Numbers>,
+    /// Sinusoid: phase at t = 0, rad.
+    pub phase_rad: Option<Numbers>,
+    /// Sinusoid: blocks that override the keys above, one per agent.
+    pub agents: Option<Vec<SinusoidFile>>,
+    /// Waypoints: the points, m.
+    pub points_m: Option<Vec<[f64; 3]>>,
+    /// Waypoints: offset of each agent from the points, m.
+    pub offset_m: Option<Vec<[f64; 3]>>,
+    /// Waypoints: bound on the speed, m/s.
+    pub max_speed_m_s: Option<f64>,
+    /// Waypoints: bound on the acceleration, m/s^2.
+    pub max_acceleration_m_s2: Option<f64>,
+    /// Waypoints: spacing of the points interpolated on each leg; longer steps make wider, faster bends (default 2 m).
+    pub step_m: Option<f64>,
+}
+
+/// Forms of a reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReferenceKind {
+    /// center + amplitude sin(frequency t + phase) on every channel.
+    Sinusoid,
+    /// A smooth rest-to-rest path through points.
+    Waypoints,
+}
+
+/// One agent's sinusoid; what is absent is taken from `[reference]`.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SinusoidFile {
+    /// Mean, m or rad.
+    pub center: Option<Numbers>,
+    /// Amplitude, m or rad.
+    pub amplitude: Option<Numbers>,
+    /// Angular frequency, rad/s.
+    pub frequency_rad_s: Option<Numbers>,
+    /// Phase at t = 0, rad.
+    pub phase_rad: Option<Numbers>,
+}
+
+/// `[synthesis]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SynthesisFile {
+    /// The weights: "uav-paper" or "uav-physical".
+    pub preset: Option<String>,
+    /// A gains.json that replaces the synthesized gains of "ftc", "pid" and "pid-tuned".
+    pub gains: Option<String>,
+    /// Additional controllers.
+    #[serde(default)]
+    pub named: BTreeMap<String, NamedGainsFile>,
+    /// Overrides of the preset on the position channels.
+    pub position: Option<WeightsFile>,
+    /// Overrides of the preset on the attitude channels.
+    pub attitude: Option<WeightsFile>,
+}
+
+/// An additional controller whose gains come from a file.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedGainsFile {
+    /// A gains.json; a relative path starts at the campaign file's folder.
+    pub gains: String,
+    /// Which of the file's controllers to take (default "ftc").
+    pub controller: Option<String>,
+}
+
+/// Overrides of a preset's weights; see section 2 of the model in README.md.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WeightsFile {
+    /// Weights on the tracking error [int e, e, e'].
+    pub q1: Option<[f64; 3]>,
+    /// Weights on the estimation error, one per observer state.
+    pub q2: Option<Vec<f64>>,
+    /// Weight on the feedback.
+    pub r: Option<f64>,
+    /// Attenuation level of both synthesis steps.
+    pub rho: Option<f64>,
+    /// Measurement noise of the filter.
+    pub nu: Option<f64>,
+    /// Weight of the sensor fault's model error in the filter.
+    pub eps2: Option<f64>,
+    /// Input of the sensor fault into [int y, y, y'], B20 of (34).
+    pub sensor_fault_input: Option<[f64; 3]>,
+    /// Measurement noise of the "pid" observer.
+    pub pid_nu: Option<f64>,
+    /// Smoothing model: extrapolation order p.
+    pub smoothing_order: Option<usize>,
+    /// Smoothing model: leak, 1/s.
+    pub smoothing_leak_per_s: Option<f64>,
+    /// Smoothing model: spacing of the taps, s.
+    pub smoothing_spacing_s: Option<f64>,
+    /// Smoothing model: windows of the actuator and of the sensor fault.
+    pub smoothing_windows: Option<[usize; 2]>,
+    /// Smoothing model: first row of the companion matrix instead of order and leak.
+    pub smoothing_weights: Option<Vec<f64>>,
+}
+
+/// `[initial]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialFile {
+    /// x - r at t = 0, m or rad.
+    pub error: Option<Value>,
+    /// x' - r' at t = 0, m/s or rad/s.
+    pub error_rate: Option<Value>,
+    /// Integral of the error at t = 0, m s or rad s.
+    pub error_integral: Option<Value>,
+    /// What the observers start from (default "measured").
+    pub observer: Option<ObserverStart>,
+    /// Blocks that override the keys above, one per agent.
+    pub agents: Option<Vec<InitialBlock>>,
+}
+
+/// One agent's initial errors; what is absent is taken from `[initial]`.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialBlock {
+    /// x - r at t = 0, m or rad.
+    pub error: Option<Value>,
+    /// x' - r' at t = 0, m/s or rad/s.
+    pub error_rate: Option<Value>,
+    /// Integral of the error at t = 0, m s or rad s.
+    pub error_integral: Option<Value>,
+}
+
+/// What an observer starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ObserverStart {
+    /// The first measurement: ehat(0) = y(0) - C0 r(0).
+    Measured,
+    /// Zero, whatever the error is.
+    Zero,
+}
+
+/// `[coupling]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CouplingFile {
+    /// Strength of the coupling (10), 1/m or 1/rad times N or N m.
+    pub kappa: Value,
+}
+
+/// `[[disturbance]]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisturbanceFile {
+    /// Form of the disturbance.
+    pub kind: DisturbanceKind,
+    /// Amplitude or constant value, N or N m.
+    pub amplitude: Option<Value>,
+    /// Sine: angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Sine: phase at t = 0, rad (default 0).
+    pub phase_rad: Option<Value>,
+    /// Blocks that override the keys above, one per agent.
+    pub agents: Option<Vec<SignalBlock>>,
+}
+
+/// Forms of a disturbance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DisturbanceKind {
+    /// amplitude sin(frequency t + phase).
+    Sine,
+    /// A constant.
+    Constant,
+}
+
+/// `[[fault]]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FaultFile {
+    /// What fails.
+    pub target: FaultTarget,
+    /// How it fails.
+    pub kind: FaultKind,
+    /// Probability that an agent has this fault (default 1).
+    pub probability: Option<f64>,
+    /// The channels that fail (default "all").
+    pub channels: Option<ChannelsFile>,
+    /// Beginning, s (default 0).
+    pub onset_s: Option<Value>,
+    /// Loss: lost share of the command; bias: N, N m, m or rad.
+    pub magnitude: Option<Value>,
+    /// Smoothed square: amplitude, m or rad.
+    pub amplitude: Option<Value>,
+    /// Smoothed square: period, s.
+    pub period_s: Option<Value>,
+    /// Smoothed square: tau of tanh(sin(..)/tau).
+    pub smoothing: Option<Value>,
+    /// Smoothed square: phase at t = 0, rad (default 0).
+    pub phase_rad: Option<Value>,
+    /// Noise: standard deviation, m or rad.
+    pub std: Option<Value>,
+    /// Blocks that override the parameters above, one per agent.
+    pub agents: Option<Vec<SignalBlock>>,
+}
+
+/// One agent's parameters of a disturbance or fault; what is absent is taken from the table around it.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SignalBlock {
+    /// Amplitude.
+    pub amplitude: Option<Value>,
+    /// Angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Phase at t = 0, rad.
+    pub phase_rad: Option<Value>,
+    /// Magnitude.
+    pub magnitude: Option<Value>,
+    /// Period, s.
+    pub period_s: Option<Value>,
+    /// tau of tanh(sin(..)/tau).
+    pub smoothing: Option<Value>,
+    /// Standard deviation.
+    pub std: Option<Value>,
+}
+
+/// What fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultTarget {
+    /// The command on its way to the plant.
+    Actuator,
+    /// The measurement on its way to the observer.
+    Sensor,
+}
+
+/// How it fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// Actuator: (1 - magnitude) u.
+    LossOfEffectiveness,
+    /// Actuator or sensor: a constant offset.
+    Bias,
+    /// Sensor: amplitude tanh(sin(2 pi t / period + phase) / smoothing).
+    SmoothedSquare,
+    /// Sensor: normal noise, held over a step.
+    Noise,
+}
+
+/// The channels of a fault.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ChannelsFile {
+    /// "all", or "one" for a random channel per agent.
+    Word(String),
+    /// Channel numbers from 1.
+    Numbers(Vec<u32>),
+}
+
+/// `[verdict]`
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VerdictFile {
+    /// Largest admissible |e| from settle_s on, m or rad.
+    pub max_error: Option<Numbers>,
+    /// Largest admissible RMS error from settle_s on, m or rad.
+    pub max_rmse: Option<Numbers>,
+    /// |e| at or below this counts as settled, m or rad (default 0.05).
+    pub settled_error: Option<Numbers>,
+}
+
+/// `[[require]]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RequireFile {
+    /// The controller that has to meet it.
+    pub controller: String,
+    /// Upper limit of the one-sided 95 % Clopper-Pearson bound of the failure rate.
+    pub failure_rate_upper_95: f64,
+}
+
+/// A number for all channels, or a list with one number per channel.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Numbers {
+    /// The same for all channels.
+    One(f64),
+    /// One per channel.
+    List(Vec<f64>),
+}
+
+/// A number, a distribution, or a list with one of them per channel.
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged)]
+pub enum Value {
+    /// A constant.
+    Number(f64),
+    /// A distribution.
+    Distribution(DistributionFile),
+    /// One per channel.
+    List(Vec<Value>),
+}
+
+/// A distribution: exactly one of the forms, and how often it is drawn.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DistributionFile {
+    /// [low, high]
+    pub uniform: Option<[f64; 2]>,
+    /// [low, high], both positive; uniform in the logarithm.
+    pub log_uniform: Option<[f64; 2]>,
+    /// Normal.
+    pub normal: Option<NormalFile>,
+    /// Normal, restricted to an interval.
+    pub truncated_normal: Option<TruncatedNormalFile>,
+    /// One of these values.
+    pub choice: Option<Vec<f64>>,
+    /// Relative weights of `choice` (default: equal).
+    pub weights: Option<Vec<f64>>,
+    /// Drawn once per "episode", "agent" or "channel".
+    pub per: Option<Per>,
+}
+
+/// `normal`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NormalFile {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub std: f64,
+}
+
+/// `truncated_normal`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TruncatedNormalFile {
+    /// Mean before truncation.
+    pub mean: f64,
+    /// Standard deviation before truncation.
+    pub std: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Who shares a draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Per {
+    /// All agents and channels of an episode.
+    Episode,
+    /// All channels of an agent.
+    Agent,
+    /// Nobody.
+    Channel,
+}
+
+/// Written by hand, because an untagged enum would hide which key of a distribution is wrong.
+impl<'de> Deserialize<'de> for Value {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ValueVisitor;
+        impl<'de> Visitor<'de> for ValueVisitor {
+            type Value = Value;
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("a number, a list with one value per channel, or a distribution such as { uniform = [0, 1] }")
+            }
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+                Ok(Value::Number(value))
+            }
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "an integer in a campaign stands for a real number"
+            )]
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+                Ok(Value::Number(value as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Value, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Value::List)
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Value, A::Error> {
+                DistributionFile::deserialize(MapAccessDeserializer::new(table))
+                    .map(Value::Distribution)
+            }
+        }
+        deserializer.deserialize_any(ValueVisitor)
+    }
+}

@@ -1,0 +1,293 @@
+//! A campaign: everything that decides the result of a run, checked, in SI units, with nothing optional left.
+
+mod check;
+pub mod distribution;
+pub mod error;
+pub mod file;
+mod kinds;
+mod validate;
+
+pub use check::Parameter;
+pub use distribution::Distribution;
+pub use error::CampaignError;
+pub use file::{ActuationKind, DisturbanceKind, FaultKind, FaultTarget, ObserverStart, Per};
+
+use crate::reference::Reference;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Channels of a UAV, in the order of every table and list.
+pub const UAV_CHANNELS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+/// The first attitude channel.
+pub const FIRST_ATTITUDE: usize = 3;
+/// Name of the paper's fault-tolerant controller.
+pub const FTC: &str = "ftc";
+/// Name of the PID computed-torque controller, the paper's text read plainly.
+pub const PID: &str = "pid";
+/// Name of the PID whose observer distrusts the faulty velocity channel.
+pub const PID_TUNED: &str = "pid-tuned";
+
+/// A validated campaign.
+#[derive(Debug, Clone)]
+pub struct Campaign {
+    /// The file, as it was named on the command line.
+    pub path: PathBuf,
+    /// The file's text.
+    pub text: String,
+    /// Name.
+    pub name: String,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Number of episodes, at least 1.
+    pub episodes: u32,
+    /// Names of the controllers, all different, at least one.
+    pub controllers: Vec<String>,
+    /// Duration and step.
+    pub time: Time,
+    /// The plant as the controller models it.
+    pub uav: Uav,
+    /// Agents per episode, at least 1.
+    pub team: usize,
+    /// Where each agent is to go.
+    pub reference: Reference,
+    /// Where the gains come from.
+    pub synthesis: GainSource,
+    /// True mass over modelled mass, per agent.
+    pub mass_scale: Drawn,
+    /// True inertia over modelled inertia, per agent.
+    pub inertia_scale: Drawn,
+    /// Coupling strength, per agent.
+    pub kappa: Drawn,
+    /// Initial errors.
+    pub initial: Initial,
+    /// External disturbances, summed.
+    pub disturbances: Vec<Disturbance>,
+    /// Faults.
+    pub faults: Vec<Fault>,
+    /// What counts as failure.
+    pub verdict: Verdict,
+    /// Conditions on the result.
+    pub requirements: Vec<Requirement>,
+}
+
+impl Campaign {
+    /// Reads and checks a campaign file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it, with file, key, value, limit and remedy.
+    pub fn load(path: &Path) -> Result<Self, CampaignError> {
+        let text = std::fs::read_to_string(path).map_err(|source| CampaignError::Read {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks the text of a campaign file; `path` is for messages and for the files that it names.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
+        let file = toml::from_str(text).map_err(|error| error::syntax(path, &error))?;
+        validate::validate(file, text, path)
+    }
+
+    /// The JSON Schema of the campaign file.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(file::CampaignFile).to_value()
+    }
+
+    /// Channels of one agent.
+    #[must_use]
+    pub fn channels(&self) -> &'static [&'static str] {
+        &UAV_CHANNELS
+    }
+
+    /// The groups of channels whose errors may be averaged: metres and radians are never mixed.
+    #[must_use]
+    pub fn channel_groups(&self) -> [(&'static str, Range<usize>); 2] {
+        [
+            ("position", 0..FIRST_ATTITUDE),
+            ("attitude", FIRST_ATTITUDE..UAV_CHANNELS.len()),
+        ]
+    }
+}
+
+/// Duration and step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Time {
+    /// Integration step, s.
+    pub step_s: f64,
+    /// Steps of an episode.
+    pub steps: u32,
+    /// First step of the metrics.
+    pub settle_step: u32,
+}
+
+impl Time {
+    /// The step at which a fault of this onset begins; t = k dt is never accumulated, and a hair below a step belongs
+    /// to it.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "onsets are validated to lie in the run"
+    )]
+    pub fn onset_step(&self, onset_s: f64) -> u32 {
+        (onset_s / self.step_s - 1e-9).ceil().max(0.0) as u32
+    }
+}
+
+/// The UAV of (3) as the controller models it, with the limits of the `thrust` actuation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uav {
+    /// What the command acts through.
+    pub actuation: ActuationKind,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Principal inertias, kg m^2.
+    pub inertia_kg_m2: [f64; 3],
+    /// Translational damping, N s/m.
+    pub drag_n_s_m: f64,
+    /// Rotational damping, N m s.
+    pub angular_drag_n_m_s: f64,
+    /// Gravity, m/s^2.
+    pub gravity_m_s2: f64,
+    /// Bandwidth of the attitude command filter, rad/s.
+    pub command_filter_rad_s: f64,
+    /// Largest thrust, N.
+    pub max_thrust_n: f64,
+    /// Largest torque about each axis, N m.
+    pub max_torque_n_m: f64,
+    /// Largest commanded roll and pitch, rad.
+    pub max_tilt_rad: f64,
+}
+
+/// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Who shares a draw.
+    pub per: Per,
+    /// Channels per agent (1 for a quantity of the agent).
+    pub channels: usize,
+    /// Distribution of each agent and channel, agent by agent.
+    pub distributions: Vec<Distribution>,
+}
+
+impl Drawn {
+    /// The distribution of an agent's channel.
+    #[must_use]
+    pub fn of(&self, agent: usize, channel: usize) -> &Distribution {
+        &self.distributions[agent * self.channels + channel]
+    }
+
+    /// Whether it is zero in every episode.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.distributions.iter().all(|d| d.support() == (0.0, 0.0))
+    }
+}
+
+/// Initial errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Initial {
+    /// x - r, m or rad.
+    pub error: Drawn,
+    /// x' - r', m/s or rad/s.
+    pub error_rate: Drawn,
+    /// Integral of x - r, m s or rad s.
+    pub error_integral: Drawn,
+    /// What the observers start from.
+    pub observer: ObserverStart,
+}
+
+/// An external disturbance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Disturbance {
+    /// Form.
+    pub kind: DisturbanceKind,
+    /// Its parameters, in the order of [`DisturbanceKind::parameters`].
+    pub parameters: Vec<Drawn>,
+}
+
+/// An actuator or sensor fault.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// What fails.
+    pub target: FaultTarget,
+    /// How.
+    pub kind: FaultKind,
+    /// Probability that an agent has it.
+    pub probability: f64,
+    /// Where.
+    pub channels: FaultChannels,
+    /// When, s; one value per agent.
+    pub onset_s: Drawn,
+    /// Its parameters, in the order of [`FaultKind::parameters`].
+    pub parameters: Vec<Drawn>,
+}
+
+impl Fault {
+    /// Whether some faults begin inside the run rather than with it.
+    #[must_use]
+    pub fn begins_later(&self) -> bool {
+        self.onset_s
+            .distributions
+            .iter()
+            .any(|onset| onset.support().1 > 0.0)
+    }
+}
+
+/// The channels that a fault strikes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FaultChannels {
+    /// One channel of each agent, drawn evenly.
+    One,
+    /// These channels (from 0).
+    These(Vec<usize>),
+}
+
+/// What counts as failure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Largest |e| from settle_s on, per channel; infinite where there is no limit.
+    pub max_error: Vec<f64>,
+    /// Largest RMS error from settle_s on, per channel; infinite where there is no limit.
+    pub max_rmse: Vec<f64>,
+    /// |e| at or below this counts as settled, per channel.
+    pub settled_error: Vec<f64>,
+}
+
+/// A condition on the result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirement {
+    /// The controller that has to meet it.
+    pub controller: String,
+    /// Upper limit of the one-sided 95 % Clopper-Pearson bound of the failure rate.
+    pub failure_rate_upper_95: f64,
+}
+
+/// Where the gains come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GainSource {
+    /// Weights of the position and of the attitude channels.
+    pub designs: [crate::synthesis::ChannelDesign; 2],
+    /// Name of the preset that the weights start from.
+    pub preset: String,
+    /// File that replaces the synthesized gains.
+    pub gains: Option<PathBuf>,
+    /// Additional controllers.
+    pub named: Vec<NamedGains>,
+}
+
+/// An additional controller from a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedGains {
+    /// Its name in this campaign.
+    pub name: String,
+    /// The file.
+    pub gains: PathBuf,
+    /// Which of the file's controllers.
+    pub controller: String,
+}

@@ -1,0 +1,363 @@
+//! The commands.
+
+use crate::show;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fs;
+use std::io::{IsTerminal, Write, stdout};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::time::Duration;
+use urts_mc::backend::cpu::{Precision, Simd};
+use urts_mc::campaign::Campaign;
+use urts_mc::gains::{GainSet, GainsError};
+use urts_mc::manifest::campaign_hash;
+use urts_mc::output::{OutputDir, OutputError};
+use urts_mc::replay::{ReplayError, replay};
+use urts_mc::run::{RunError, Settings, run};
+
+/// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad usage or campaign file; 3 synthesis failed; 4 a [[require]] of the \
+campaign does not hold; 1 anything else.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Fly a campaign and write its tables
+    Run(RunArguments),
+    /// Check a campaign, synthesize its gains and show what would be drawn; flies nothing
+    Check(CheckArguments),
+    /// Show the gains of a campaign: poles, margins, certificate, checks
+    Synthesize(SynthesizeArguments),
+    /// Fly one episode of a run again and write its trajectories
+    Replay(ReplayArguments),
+    /// Print the JSON Schema of the campaign file
+    Schema,
+}
+
+#[derive(Debug, Args)]
+struct Overrides {
+    /// The campaign file
+    campaign: PathBuf,
+    /// Fly this many episodes instead of the campaign's
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    episodes: Option<u32>,
+    /// Use this seed instead of the campaign's
+    #[arg(long)]
+    seed: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+struct RunArguments {
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Number format of the episode loop; f64 is the reference
+    #[arg(long, value_enum, default_value = "f32")]
+    precision: PrecisionChoice,
+    /// Layout of single-precision episodes; the result is the same for avx2 and avx512
+    #[arg(long, value_enum, default_value = "auto")]
+    simd: SimdChoice,
+    /// Threads; 0 takes all cores. The result does not depend on it
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Output directory [default: reports/<name of the campaign>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Replace whatever the output directory holds
+    #[arg(long)]
+    overwrite: bool,
+    /// Write the episode and channel tables as CSV too
+    #[arg(long)]
+    csv: bool,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct CheckArguments {
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Print as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct SynthesizeArguments {
+    /// The campaign file
+    campaign: PathBuf,
+    /// Print as JSON, in the format of gains.json
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct ReplayArguments {
+    /// Output directory of the run
+    run: PathBuf,
+    /// Index of the episode, from 0
+    #[arg(long)]
+    episode: u32,
+    /// The controller
+    #[arg(long, default_value = "ftc")]
+    controller: String,
+    /// Seconds between samples
+    #[arg(long, default_value_t = 0.01)]
+    interval: f64,
+    /// The Parquet file to write [default: <run>/replay-<episode>-<controller>.parquet]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum PrecisionChoice {
+    F32,
+    F64,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SimdChoice {
+    Auto,
+    Scalar,
+    Avx2,
+    Avx512,
+}
+
+/// How the program ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Code {
+    Done = 0,
+    Other = 1,
+    Usage = 2,
+    Synthesis = 3,
+    Unmet = 4,
+}
+
+impl From<Code> for process::ExitCode {
+    fn from(code: Code) -> Self {
+        Self::from(code as u8)
+    }
+}
+
+/// An error and the exit code that it means.
+#[derive(Debug)]
+pub struct Failure {
+    /// What went wrong.
+    pub error: anyhow::Error,
+    /// How the program ends.
+    pub code: Code,
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Failure {
+    fn from(error: E) -> Self {
+        let error = error.into();
+        let code = code_of(&error);
+        Self { error, code }
+    }
+}
+
+fn code_of(error: &anyhow::Error) -> Code {
+    let of_gains = |error: &GainsError| {
+        if error.is_usage() {
+            Code::Usage
+        } else {
+            Code::Synthesis
+        }
+    };
+    let of_output = |error: &OutputError| {
+        if error.is_usage() {
+            Code::Usage
+        } else {
+            Code::Other
+        }
+    };
+    if error.is::<urts_mc::campaign::CampaignError>() {
+        return Code::Usage;
+    }
+    match error.downcast_ref() {
+        Some(RunError::Gains(error)) => return of_gains(error),
+        Some(RunError::Output(error)) => return of_output(error),
+        Some(RunError::Threads { .. }) => return Code::Usage,
+        _ => {}
+    }
+    match error.downcast_ref() {
+        Some(ReplayError::Run(error)) => return of_output(error),
+        Some(ReplayError::Gains(error)) => return of_gains(error),
+        Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
+        None => {}
+    }
+    error
+        .downcast_ref()
+        .map(of_gains)
+        .or_else(|| error.downcast_ref().map(of_output))
+        .unwrap_or(Code::Other)
+}
+
+/// Carries out a command.
+///
+/// # Errors
+/// Whatever stops it, with the exit code that it means.
+pub fn execute(arguments: Arguments) -> Result<Code, Failure> {
+    match arguments.command {
+        Command::Run(arguments) => run_command(&arguments),
+        Command::Check(arguments) => check_command(&arguments),
+        Command::Synthesize(arguments) => synthesize_command(&arguments),
+        Command::Replay(arguments) => replay_command(&arguments),
+        Command::Schema => {
+            print(&format!(
+                "{}\n",
+                serde_json::to_string_pretty(&Campaign::schema())?
+            ))?;
+            Ok(Code::Done)
+        }
+    }
+}
+
+impl Overrides {
+    fn load(&self) -> Result<Campaign, Failure> {
+        let mut campaign = Campaign::load(&self.campaign)?;
+        campaign.episodes = self.episodes.unwrap_or(campaign.episodes);
+        campaign.seed = self.seed.unwrap_or(campaign.seed);
+        Ok(campaign)
+    }
+}
+
+fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
+    let campaign = arguments.overrides.load()?;
+    let simd = match arguments.simd {
+        SimdChoice::Auto => None,
+        SimdChoice::Scalar => Some(Simd::Scalar),
+        SimdChoice::Avx2 => Some(Simd::Avx2),
+        SimdChoice::Avx512 => Some(Simd::Avx512),
+    };
+    if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
+        let error = anyhow::anyhow!("--simd {simd:?}: this processor lacks it; use auto");
+        return Err(Failure {
+            error,
+            code: Code::Usage,
+        });
+    }
+    let precision = match arguments.precision {
+        PrecisionChoice::F32 => Precision::F32,
+        PrecisionChoice::F64 => Precision::F64,
+    };
+    let settings = Settings {
+        precision,
+        simd,
+        threads: arguments.threads,
+    };
+    let path = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("reports").join(&campaign.name));
+    let out = OutputDir::claim(&path, &campaign_hash(&campaign), arguments.overwrite)?;
+
+    let progress = progress_bar(campaign.episodes);
+    let findings = run(&campaign, settings, &out, arguments.csv, &|episodes| {
+        progress.inc(u64::from(episodes))
+    });
+    progress.finish_and_clear();
+    let findings = findings?;
+    if arguments.json {
+        print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&show::findings_json(&findings))?
+        ))?;
+    } else {
+        print(&show::findings(&campaign, &findings, &path))?;
+    }
+    Ok(if findings.unmet.is_empty() {
+        Code::Done
+    } else {
+        Code::Unmet
+    })
+}
+
+/// A bar with rate and time left, on a terminal only.
+fn progress_bar(episodes: u32) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::with_draw_target(
+            Some(u64::from(episodes)),
+            ProgressDrawTarget::hidden(),
+        );
+    }
+    let bar = ProgressBar::new(u64::from(episodes));
+    let template = "{bar:32} {human_pos}/{human_len} episodes  {per_sec}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
+    let campaign = arguments.overrides.load()?;
+    let gains = GainSet::obtain(&campaign)?;
+    if arguments.json {
+        print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&show::plan_json(&campaign))?
+        ))?;
+    } else {
+        print(&show::plan(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
+    let campaign = Campaign::load(&arguments.campaign)?;
+    let gains = GainSet::obtain(&campaign)?;
+    if arguments.json {
+        print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&gains.to_file(&campaign.synthesis.designs))?
+        ))?;
+    } else {
+        print(&show::gains(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
+    let ReplayArguments {
+        run,
+        episode,
+        controller,
+        interval,
+        out,
+    } = arguments;
+    let replayed = replay(run, *episode, controller, *interval)?;
+    let path = out
+        .clone()
+        .unwrap_or_else(|| run.join(format!("replay-{episode}-{controller}.parquet")));
+    let name = path.file_name().map_or_else(
+        || "replay.parquet".into(),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    let dir = path
+        .parent()
+        .filter(|dir| !dir.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    fs::create_dir_all(dir).map_err(|source| OutputError::Unwritable {
+        path: dir.to_path_buf(),
+        source,
+    })?;
+    OutputDir::existing(dir).write_parquet(&name, &replayed.table())?;
+    print(&show::replay(&replayed, *episode, controller, &path))?;
+    Ok(Code::Done)
+}
+
+/// Prints to standard output; a reader that went away is not an error.
+fn print(text: &str) -> Result<(), Failure> {
+    match stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,437 @@
+//! The gains that fly: synthesized, or from a file and verified the same way; and gains.json.
+
+use crate::campaign::{Campaign, CampaignError, FTC, PID, PID_TUNED};
+use crate::synthesis::{
+    Certificate, ChannelDesign, ChannelSynthesis, Check, ControllerGains, LoopAnalysis, LoopGains,
+    SolverReport, SynthesisError, loop_gains, poles, synthesize, verify,
+};
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// The channel types of a UAV, in the order of every pair here.
+pub const ROLES: [&str; 2] = ["position", "attitude"];
+/// The version of the gains.json format.
+const FORMAT: u32 = 1;
+
+/// Why there are no gains to fly.
+#[derive(Debug, Error)]
+pub enum GainsError {
+    /// The synthesis failed.
+    #[error("{}: synthesis of the {role} channels: {source}", path.display())]
+    Synthesis {
+        /// The campaign file.
+        path: PathBuf,
+        /// The channels.
+        role: &'static str,
+        /// Why.
+        source: SynthesisError,
+    },
+    /// Gains from a file do not pass the verification.
+    #[error("{}: controllers.{controller}.{role}: {source}", path.display())]
+    Refused {
+        /// The gains file.
+        path: PathBuf,
+        /// The controller in the file.
+        controller: String,
+        /// The channels.
+        role: &'static str,
+        /// Why.
+        source: SynthesisError,
+    },
+    /// A gains file cannot be read or lacks what is needed.
+    #[error("{}: {reason}", path.display())]
+    File {
+        /// The gains file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        reason: String,
+    },
+    /// The gains and the campaign do not go together.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+}
+
+impl GainsError {
+    /// Whether the user's files are at fault rather than the synthesis.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        matches!(self, Self::File { .. } | Self::Campaign(_))
+    }
+}
+
+/// The controllers of a campaign, in its order.
+#[derive(Debug, Clone)]
+pub struct GainSet {
+    /// The controllers.
+    pub controllers: Vec<FlyingController>,
+}
+
+/// A controller ready to fly.
+#[derive(Debug, Clone)]
+pub struct FlyingController {
+    /// Its name in the campaign.
+    pub name: String,
+    /// Whose gains they are: "synthesized", or a file and the name there.
+    pub source: String,
+    /// Gains on the position and on the attitude channels.
+    pub channels: [ChannelController; 2],
+}
+
+/// A controller on one channel type.
+#[derive(Debug, Clone)]
+pub struct ChannelController {
+    /// The gains as designed.
+    pub gains: ControllerGains,
+    /// The gains as integrated.
+    pub loop_gains: LoopGains,
+    /// What was found about them; none for gains read back from a run, which were verified then.
+    pub findings: Option<Findings>,
+}
+
+/// What synthesis and verification found about the gains of one controller on one channel type.
+#[derive(Debug, Clone, Serialize)]
+pub struct Findings {
+    /// Poles and margins.
+    pub analysis: LoopAnalysis,
+    /// The certified attenuation level, where the controller estimates the faults.
+    pub certificate: Option<Certificate>,
+    /// Every check.
+    pub checks: Vec<Check>,
+    /// How the solver ended, where the gains are its own.
+    pub solver: Vec<SolverReport>,
+}
+
+/// gains.json.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GainsFile {
+    /// Version of the format.
+    pub format: u32,
+    /// Where the numbers are from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The designs that the gains belong to; not read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub designs: Option<serde_json::Value>,
+    /// The controllers by name.
+    pub controllers: BTreeMap<String, ControllerFile>,
+}
+
+/// One controller of a gains.json.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControllerFile {
+    /// Where the numbers are from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// Gains of the position channels.
+    pub position: ControllerGains,
+    /// Gains of the attitude channels.
+    pub attitude: ControllerGains,
+    /// What was found about them, by channel type; not read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub findings: Option<serde_json::Value>,
+}
+
+impl GainSet {
+    /// Synthesizes, reads and verifies the gains of a campaign's controllers, and checks its step against them.
+    ///
+    /// # Errors
+    /// If a synthesis fails, a file is unreadable or refused, or the step is too long for the gains.
+    pub fn obtain(campaign: &Campaign) -> Result<Self, GainsError> {
+        let source = &campaign.synthesis;
+        let built_in = |name: &String| [FTC, PID, PID_TUNED].contains(&name.as_str());
+        let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(built_in) {
+            Some(synthesize_both(campaign)?)
+        } else {
+            None
+        };
+        let mut controllers = Vec::new();
+        for name in &campaign.controllers {
+            let named = source.named.iter().find(|named| named.name == *name);
+            let file = named
+                .map(|named| (&named.gains, &named.controller))
+                .or(source.gains.as_ref().map(|path| (path, name)));
+            controllers.push(match (file, &synthesized) {
+                (Some((path, controller)), _) => {
+                    from_file(&source.designs, name, path, controller, true)?
+                }
+                (None, Some(synthesized)) => from_synthesis(campaign, name, synthesized)?,
+                (None, None) => {
+                    let reason = format!("no gains for the controller {name:?}");
+                    return Err(GainsError::File {
+                        path: campaign.path.clone(),
+                        reason,
+                    });
+                }
+            });
+        }
+        let set = Self { controllers };
+        set.check_step(campaign)?;
+        Ok(set)
+    }
+
+    /// Reads the gains of a run back; they were verified when it was flown.
+    ///
+    /// # Errors
+    /// If the file is unreadable or lacks a controller.
+    pub fn read(campaign: &Campaign, path: &Path) -> Result<Self, GainsError> {
+        let read = |name: &String| from_file(&campaign.synthesis.designs, name, path, name, false);
+        Ok(Self {
+            controllers: campaign
+                .controllers
+                .iter()
+                .map(read)
+                .collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The gains as the episode loop takes them.
+    #[must_use]
+    pub fn loops(&self) -> Vec<[LoopGains; 2]> {
+        self.controllers
+            .iter()
+            .map(|controller| [0, 1].map(|role| controller.channels[role].loop_gains))
+            .collect()
+    }
+
+    /// The gains as a file.
+    #[must_use]
+    pub fn to_file(&self, designs: &[ChannelDesign; 2]) -> GainsFile {
+        let by_role = |values: [serde_json::Value; 2]| {
+            serde_json::Value::Object(ROLES.into_iter().map(String::from).zip(values).collect())
+        };
+        let controllers = self.controllers.iter().map(|controller| {
+            let [position, attitude] = &controller.channels;
+            let file = ControllerFile {
+                source: Some(controller.source.clone()),
+                position: position.gains.clone(),
+                attitude: attitude.gains.clone(),
+                findings: Some(by_role([
+                    json(&position.findings),
+                    json(&attitude.findings),
+                ])),
+            };
+            (controller.name.clone(), file)
+        });
+        GainsFile {
+            format: FORMAT,
+            source: None,
+            designs: Some(by_role([json(&designs[0]), json(&designs[1])])),
+            controllers: controllers.collect(),
+        }
+    }
+
+    /// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
+    fn check_step(&self, campaign: &Campaign) -> Result<(), CampaignError> {
+        let step_s = campaign.time.step_s;
+        let worst = self
+            .controllers
+            .iter()
+            .flat_map(|controller| {
+                controller
+                    .channels
+                    .iter()
+                    .map(move |channel| (controller, channel))
+            })
+            .flat_map(|(controller, channel)| {
+                poles(&channel.loop_gains)
+                    .into_iter()
+                    .map(move |pole| (controller, pole))
+            })
+            .map(|(controller, pole)| (longest_stable_step(pole), controller, pole))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((limit_s, controller, pole)) if step_s > limit_s => Err(CampaignError::Invalid {
+                path: campaign.path.clone(),
+                key: "time.step_s".into(),
+                value: step_s.to_string(),
+                limit: format!(
+                    "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {:?}",
+                    pole.re, pole.im, controller.name
+                ),
+                remedy: format!("use {:.1e} or less", limit_s / 2.0),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A value as JSON; these types have string keys and finite numbers, which always can be.
+fn json(value: &impl Serialize) -> serde_json::Value {
+    serde_json::to_value(value).unwrap_or_default()
+}
+
+/// The longest step at which the classical Runge-Kutta method damps a mode that decays.
+fn longest_stable_step(pole: Complex<f64>) -> f64 {
+    let grows = |step_s: f64| {
+        let z = pole * step_s;
+        let one = Complex::new(1.0, 0.0);
+        (one + z * (one + z / 2.0 * (one + z / 3.0 * (one + z / 4.0)))).norm() > 1.0
+    };
+    // No decaying mode is stable beyond |z| = 4.
+    let (mut stable, mut unstable) = (0.0, 4.0 / pole.norm().max(f64::MIN_POSITIVE));
+    if !unstable.is_finite() || !grows(unstable) {
+        return unstable;
+    }
+    for _ in 0..60 {
+        let middle = f64::midpoint(stable, unstable);
+        if grows(middle) {
+            unstable = middle;
+        } else {
+            stable = middle;
+        }
+    }
+    stable
+}
+
+fn synthesize_both(campaign: &Campaign) -> Result<[ChannelSynthesis; 2], GainsError> {
+    let one = |role: usize| {
+        synthesize(&campaign.synthesis.designs[role]).map_err(|source| GainsError::Synthesis {
+            path: campaign.path.clone(),
+            role: ROLES[role],
+            source,
+        })
+    };
+    let position = one(0)?;
+    let [first, second] = &campaign.synthesis.designs;
+    let attitude = if first == second {
+        position.clone()
+    } else {
+        one(1)?
+    };
+    Ok([position, attitude])
+}
+
+fn from_synthesis(
+    campaign: &Campaign,
+    name: &str,
+    synthesized: &[ChannelSynthesis; 2],
+) -> Result<FlyingController, GainsError> {
+    let channel = |role: usize| {
+        let of = &synthesized[role];
+        let bare = |analysis: &LoopAnalysis| Findings {
+            analysis: analysis.clone(),
+            certificate: None,
+            checks: Vec::new(),
+            solver: Vec::new(),
+        };
+        let (gains, findings) = match name {
+            PID => (&of.pid, bare(&of.analysis.pid)),
+            PID_TUNED => (&of.pid_tuned, bare(&of.analysis.pid_tuned)),
+            _ => {
+                let certificate = Some(of.certificate.clone());
+                let (checks, solver) = (of.checks.clone(), of.solver.clone());
+                (
+                    &of.ftc,
+                    Findings {
+                        analysis: of.analysis.ftc.clone(),
+                        certificate,
+                        checks,
+                        solver,
+                    },
+                )
+            }
+        };
+        let loop_gains = integrable(&of.design, gains).map_err(|source| GainsError::Synthesis {
+            path: campaign.path.clone(),
+            role: ROLES[role],
+            source,
+        })?;
+        Ok::<_, GainsError>(ChannelController {
+            gains: gains.clone(),
+            loop_gains,
+            findings: Some(findings),
+        })
+    };
+    Ok(FlyingController {
+        name: name.to_string(),
+        source: "synthesized".into(),
+        channels: [channel(0)?, channel(1)?],
+    })
+}
+
+fn from_file(
+    designs: &[ChannelDesign; 2],
+    name: &str,
+    path: &Path,
+    controller: &str,
+    check: bool,
+) -> Result<FlyingController, GainsError> {
+    let broken = |reason: String| GainsError::File {
+        path: path.to_path_buf(),
+        reason,
+    };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| broken(format!("cannot be read ({error}); name a gains.json")))?;
+    let file: GainsFile = serde_json::from_str(&text)
+        .map_err(|error| broken(format!("{error}; write it as the gains.json of a run")))?;
+    if file.format != FORMAT {
+        return Err(broken(format!(
+            "format = {}: this program reads format {FORMAT}",
+            file.format
+        )));
+    }
+    let found = file.controllers.get(controller).ok_or_else(|| {
+        let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
+        broken(format!(
+            "controllers.{controller}: absent; the file has {}",
+            known.join(", ")
+        ))
+    })?;
+    let channel = |role: usize, gains: &ControllerGains| {
+        let refused = |source| GainsError::Refused {
+            path: path.to_path_buf(),
+            controller: controller.to_string(),
+            role: ROLES[role],
+            source,
+        };
+        let loop_gains = integrable(&designs[role], gains).map_err(refused)?;
+        let verified = if check {
+            Some(verify(&designs[role], gains).map_err(refused)?)
+        } else {
+            None
+        };
+        let findings = verified.map(|verified| Findings {
+            analysis: verified.analysis,
+            certificate: verified.certificate,
+            checks: verified.checks,
+            solver: Vec::new(),
+        });
+        Ok::<_, GainsError>(ChannelController {
+            gains: gains.clone(),
+            loop_gains,
+            findings,
+        })
+    };
+    let channels = [channel(0, &found.position)?, channel(1, &found.attitude)?];
+    if channels[0].loop_gains.states != channels[1].loop_gains.states {
+        let remedy = "give both fault estimates, or neither";
+        return Err(broken(format!(
+            "controllers.{controller}: position and attitude differ in kind; {remedy}"
+        )));
+    }
+    let source = format!("{} ({controller})", path.display());
+    Ok(FlyingController {
+        name: name.to_string(),
+        source,
+        channels,
+    })
+}
+
+/// The gains as integrated; what the loop leaves out must be zero.
+fn integrable(
+    design: &ChannelDesign,
+    gains: &ControllerGains,
+) -> Result<LoopGains, SynthesisError> {
+    let reduced = loop_gains(design, gains)?;
+    match reduced.k[5..].iter().find(|gain| **gain != 0.0) {
+        Some(gain) => Err(SynthesisError::Unsupported(format!(
+            "k has {gain} on an estimate of the sensor fault, which episodes do not feed back; set it to zero"
+        ))),
+        None => Ok(reduced),
+    }
+}

@@ -1,0 +1,32 @@
+//! Monte Carlo robustness evaluation of fault-tolerant controllers for teams of UAVs.
+//!
+//! A campaign file says which closed loop flies, what disturbs it and what counts as failure; a run flies every episode under
+//! every controller on the same draws and compares the controllers pair by pair. The modules are in the order of the flow,
+//! and values move forward only:
+//!
+//! ```text
+//! campaign -> synthesis, gains -> reference -> draw -> backend (model) -> tables -> comparison (statistics) -> output
+//! ```
+//!
+//! # Invariants
+//! - A [`campaign::Campaign`] is complete and consistent; nothing after it checks input again.
+//! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a number.
+//! - [`model`] is written once, generic over the lane type; what a campaign does not use is not in its loop.
+//! - Not-a-number is a verdict ("diverged"), never a value in a statistic and never a dropped row.
+//! - A directory with a manifest holds a whole run; files appear under their final name only when complete.
+//! - The library does not print, does not exit and does not panic on input.
+
+pub mod backend;
+pub mod campaign;
+pub mod comparison;
+pub mod draw;
+pub mod gains;
+pub mod manifest;
+pub mod model;
+pub mod output;
+pub mod reference;
+pub mod replay;
+pub mod run;
+pub mod statistics;
+pub mod synthesis;
+pub mod tables;

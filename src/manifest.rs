@@ -1,0 +1,78 @@
+//! The manifest of a run: what it takes to do it again, and what it was done with.
+
+use crate::backend::cpu::{Precision, Simd};
+use crate::campaign::Campaign;
+use crate::output::{MANIFEST, OutputError};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Everything about a run that its tables do not say.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Name of the campaign.
+    pub name: String,
+    /// Version of the program.
+    pub version: String,
+    /// Revision of the program's source, where it was built from a repository.
+    pub git_revision: Option<String>,
+    /// The campaign file, as it was named.
+    pub campaign_path: String,
+    /// BLAKE3 hash of the campaign text.
+    pub campaign_blake3: String,
+    /// The campaign text.
+    pub campaign: String,
+    /// Seed that was used: the campaign's, unless it was overridden.
+    pub seed: u64,
+    /// Episodes that were flown.
+    pub episodes: u32,
+    /// Where: "cpu".
+    pub backend: String,
+    /// Number format of the episode loop.
+    pub precision: Precision,
+    /// Layout of single-precision episodes.
+    pub simd: Option<Simd>,
+    /// Threads of the episode loop.
+    pub threads: usize,
+    /// Wall-clock times.
+    pub times: Times,
+}
+
+/// Wall-clock times of a run, s.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Times {
+    /// Synthesis and verification of the gains.
+    pub synthesis_s: f64,
+    /// Tabulating references and the episode loop itself.
+    pub loop_s: f64,
+    /// Filling tables and statistics.
+    pub statistics_s: f64,
+    /// Writing files.
+    pub writing_s: f64,
+}
+
+/// The source revision that this program was built from.
+pub(crate) const GIT_REVISION: Option<&str> = option_env!("URTS_MC_GIT_REVISION");
+
+/// The hash that tells one campaign text from another.
+#[must_use]
+pub fn campaign_hash(campaign: &Campaign) -> String {
+    blake3::hash(campaign.text.as_bytes()).to_hex().to_string()
+}
+
+impl Manifest {
+    /// Reads the manifest of a run's directory.
+    ///
+    /// # Errors
+    /// If there is none or it is not one.
+    pub fn read(dir: &Path) -> Result<Self, OutputError> {
+        let no_run = |reason: String| OutputError::NoRun {
+            path: dir.to_path_buf(),
+            reason,
+        };
+        let text = std::fs::read_to_string(dir.join(MANIFEST))
+            .map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
+        serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
+    }
+}

@@ -1,0 +1,155 @@
+//! The controller of one channel: observer (20) and feedback (21), in the form that is integrated.
+//!
+//! A channel's state is [int e, x, x', observer]. The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact
+//! reduction of the 12 of (19): the taps beyond the second are a delay line that never feeds back. The observer of a PID has
+//! the 3 states ehat.
+
+use super::lanes::{Lane, Real};
+use crate::synthesis::LoopGains;
+
+/// States of a channel under the FTC.
+pub const FTC_STATES: usize = 10;
+/// States of a channel under a PID.
+pub const PID_STATES: usize = 6;
+/// States of a channel before those of its observer.
+pub const OBSERVER: usize = 3;
+
+/// Gains of one channel in the precision of the loop.
+#[derive(Debug, Clone, Copy)]
+pub struct ChannelGains<R> {
+    /// K of (21).
+    feedback: [R; 7],
+    /// -L of (20).
+    injection: [[R; 3]; 7],
+    /// Smoothing model (18): F_0' = a F_0 + b F_1, F_1' = c (F_0 - F_1).
+    smoothing: [R; 3],
+    /// Second and third entry of B20, (34); the first is zero, since the integral is computed and not sensed.
+    sensor_fault_input: [R; 2],
+}
+
+impl<R: Real> ChannelGains<R> {
+    /// The gains rounded to this precision.
+    #[must_use]
+    pub fn new(gains: &LoopGains) -> Self {
+        Self {
+            feedback: gains.k.map(R::from_f64),
+            injection: gains.l.map(|row| row.map(|entry| R::from_f64(-entry))),
+            smoothing: gains.smoothing.map(R::from_f64),
+            sensor_fault_input: [1, 2].map(|row| R::from_f64(gains.sensor_fault_input[row])),
+        }
+    }
+
+    /// What the observer starts from: ehat = y(0) - C0 r(0) and no faults.
+    pub(crate) fn measured<L: Lane<Real = R>>(
+        &self,
+        integral: L,
+        error: L,
+        rate: L,
+        fault: L,
+    ) -> [L; 3] {
+        let [b1, b2] = self.sensor_fault_input.map(L::splat);
+        [integral, fault.mul_add(b1, error), fault.mul_add(b2, rate)]
+    }
+}
+
+/// u_fb = K ehat, (21).
+#[inline(always)]
+pub(crate) fn feedback<L: Lane, const NS: usize>(
+    gains: &ChannelGains<L::Real>,
+    state: &[L; NS],
+) -> L {
+    let k = &gains.feedback;
+    let mut sum = state[OBSERVER] * L::splat(k[0]);
+    sum = state[OBSERVER + 1].mul_add(L::splat(k[1]), sum);
+    sum = state[OBSERVER + 2].mul_add(L::splat(k[2]), sum);
+    if NS == FTC_STATES {
+        sum = state[OBSERVER + 3].mul_add(L::splat(k[3]), sum);
+        sum = state[OBSERVER + 4].mul_add(L::splat(k[4]), sum);
+    }
+    sum
+}
+
+/// The derivative of the channel: [e, x', x'', ehat' of (20)].
+///
+/// `told` is the feedback that the observer is told was commanded.
+#[inline(always)]
+pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
+    gains: &ChannelGains<L::Real>,
+    state: &[L; NS],
+    error: L,
+    rate: L,
+    acceleration: L,
+    sensor_fault: L,
+    told: L,
+) -> [L; NS] {
+    let [b1, b2] = [
+        L::splat(gains.sensor_fault_input[0]),
+        L::splat(gains.sensor_fault_input[1]),
+    ];
+    let [a, b, c] = [
+        L::splat(gains.smoothing[0]),
+        L::splat(gains.smoothing[1]),
+        L::splat(gains.smoothing[2]),
+    ];
+    let unexplained = if NS == FTC_STATES {
+        sensor_fault - state[OBSERVER + 5]
+    } else {
+        sensor_fault
+    };
+    // y - yhat of (20); C0 r cancels.
+    let innovation = [
+        state[0] - state[OBSERVER],
+        unexplained.mul_add(b1, error - state[OBSERVER + 1]),
+        unexplained.mul_add(b2, rate - state[OBSERVER + 2]),
+    ];
+    let mut slope = [error; NS];
+    slope[1] = state[2];
+    slope[2] = acceleration;
+    slope[OBSERVER] = injected(&gains.injection[0], &innovation, state[OBSERVER + 1]);
+    slope[OBSERVER + 1] = injected(&gains.injection[1], &innovation, state[OBSERVER + 2]);
+    if NS == FTC_STATES {
+        slope[OBSERVER + 2] =
+            injected(&gains.injection[2], &innovation, state[OBSERVER + 3] + told);
+        slope[OBSERVER + 3] = injected(
+            &gains.injection[3],
+            &innovation,
+            state[OBSERVER + 3].mul_add(a, state[OBSERVER + 4] * b),
+        );
+        slope[OBSERVER + 4] = injected(
+            &gains.injection[4],
+            &innovation,
+            (state[OBSERVER + 3] - state[OBSERVER + 4]) * c,
+        );
+        slope[OBSERVER + 5] = injected(
+            &gains.injection[5],
+            &innovation,
+            state[OBSERVER + 5].mul_add(a, state[OBSERVER + 6] * b),
+        );
+        slope[OBSERVER + 6] = injected(
+            &gains.injection[6],
+            &innovation,
+            (state[OBSERVER + 5] - state[OBSERVER + 6]) * c,
+        );
+    } else {
+        slope[OBSERVER + 2] = injected(&gains.injection[2], &innovation, told);
+    }
+    slope
+}
+
+/// base - L (y - yhat), one row.
+#[inline(always)]
+fn injected<L: Lane>(row: &[L::Real; 3], innovation: &[L; 3], base: L) -> L {
+    let mut sum = innovation[0].mul_add(L::splat(row[0]), base);
+    sum = innovation[1].mul_add(L::splat(row[1]), sum);
+    innovation[2].mul_add(L::splat(row[2]), sum)
+}
+
+/// The estimates of f1 and f2; a PID has none and is taken to estimate zero.
+#[inline(always)]
+pub(crate) fn fault_estimates<L: Lane, const NS: usize>(state: &[L; NS]) -> [L; 2] {
+    if NS == FTC_STATES {
+        [state[OBSERVER + 3], state[OBSERVER + 5]]
+    } else {
+        [L::number(0.0); 2]
+    }
+}

@@ -1,0 +1,19 @@
+//! The closed loop of an episode: plant, observer, controller, faults and metrics, generic over the lane type.
+//!
+//! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator` over `plant_uav` and
+//! `controller`, and the sums of `metric`. [`episode`] builds groups from draws and collects their outcomes.
+
+pub mod controller;
+pub mod episode;
+mod group;
+mod integrator;
+pub mod lanes;
+mod math;
+pub mod metric;
+pub mod plant_uav;
+pub mod rng;
+mod signal;
+#[cfg(target_arch = "x86_64")]
+pub mod simd;
+
+pub use group::Shown;

@@ -1,0 +1,360 @@
+//! The UAV of (3) with the feedforward law (9), in groups of channels that act on each other.
+//!
+//! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust along
+//! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet.
+
+use super::lanes::{Lane, Real};
+use crate::campaign::Uav;
+
+/// One channel's reference at one instant: r, r', r'' and the feedforward M r'' + H(r, r') of (9).
+pub type ReferenceRow<R> = [R; 4];
+
+/// What acts on the channels of one agent at one instant.
+pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
+    /// Reference of each channel.
+    pub(crate) reference: &'a [ReferenceRow<L::Real>],
+    /// u_fb of (21).
+    pub(crate) feedback: [L; NC],
+    /// x.
+    pub(crate) position: [L; NC],
+    /// x'.
+    pub(crate) velocity: [L; NC],
+    /// c + d1 of (12).
+    pub(crate) force: [L; NC],
+    /// What an actuator fault leaves of the command.
+    pub(crate) command_gain: &'a [L; NC],
+    /// What an actuator fault adds to the command.
+    pub(crate) command_bias: &'a [L; NC],
+    /// 1 / true inertia.
+    pub(crate) inverse_inertia: &'a [L; NC],
+}
+
+/// How an agent's channels answer.
+pub(crate) struct Response<L, const NC: usize, const NX: usize> {
+    /// e = x - r.
+    pub(crate) error: [L; NC],
+    /// e'.
+    pub(crate) error_rate: [L; NC],
+    /// x''.
+    pub(crate) acceleration: [L; NC],
+    /// r''.
+    pub(crate) reference_acceleration: [L; NC],
+    /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
+    pub(crate) told: [L; NC],
+    /// The command u of (9) after limits and faults.
+    pub(crate) command: [L; NC],
+    /// By how much the limits cut the command; zero where there are none.
+    pub(crate) excess: [L; NC],
+    /// Derivative of the plant's own `NX` states.
+    pub(crate) extra_rate: [L; NX],
+}
+
+/// A group of `NC` channels of each agent that act on each other, with `NX` states of its own.
+pub(crate) trait Plant<L: Lane, const NC: usize, const NX: usize>:
+    Copy + Send + Sync
+{
+    /// Whether commands can be cut by limits.
+    const LIMITED: bool;
+    /// The answer of one agent.
+    fn respond(&self, inputs: &Inputs<'_, L, NC>, extra: &[L; NX]) -> Response<L, NC, NX>;
+}
+
+/// Modelled inertia of each channel.
+#[must_use]
+pub fn inertia(uav: &Uav) -> [f64; 6] {
+    let [jx, jy, jz] = uav.inertia_kg_m2;
+    [uav.mass_kg, uav.mass_kg, uav.mass_kg, jx, jy, jz]
+}
+
+/// H(r, r') of (8) with the modelled parameters, gravity acting downwards.
+#[must_use]
+pub fn non_inertial(uav: &Uav, rate: [f64; 6]) -> [f64; 6] {
+    let [jx, jy, jz] = uav.inertia_kg_m2;
+    let [vx, vy, vz, p, q, s] = rate;
+    let (drag, angular) = (uav.drag_n_s_m, uav.angular_drag_n_m_s);
+    [
+        drag * vx,
+        drag * vy,
+        drag * vz + uav.mass_kg * uav.gravity_m_s2,
+        q * s * (jz - jy) + angular * p,
+        s * p * (jx - jz) + angular * q,
+        p * q * (jy - jx) + angular * s,
+    ]
+}
+
+/// One axis of translation, fully actuated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis<R> {
+    mass: R,
+    drag: R,
+    gravity: R,
+}
+
+impl<R: Real> Axis<R> {
+    /// The axis x, y or z (0, 1, 2).
+    pub(crate) fn new(uav: &Uav, axis: usize) -> Self {
+        Self {
+            mass: R::from_f64(uav.mass_kg),
+            drag: R::from_f64(uav.drag_n_s_m),
+            gravity: R::from_f64(if axis == 2 { uav.gravity_m_s2 } else { 0.0 }),
+        }
+    }
+}
+
+impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
+    const LIMITED: bool = false;
+
+    #[inline(always)]
+    fn respond(&self, inputs: &Inputs<'_, L, 1>, _extra: &[L; 0]) -> Response<L, 1, 0> {
+        let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[0]);
+        let demanded = inputs.feedback[0].mul_add(L::splat(self.mass), feedforward);
+        let command = demanded.mul_add(inputs.command_gain[0], inputs.command_bias[0]);
+        let force = inputs.velocity[0].mul_add(-L::splat(self.drag), command + inputs.force[0]);
+        Response {
+            error: [inputs.position[0] - r],
+            error_rate: [inputs.velocity[0] - r_rate],
+            acceleration: [force.mul_add(inputs.inverse_inertia[0], -L::splat(self.gravity))],
+            reference_acceleration: [r_acceleration],
+            told: inputs.feedback,
+            command: [command],
+            excess: [L::number(0.0)],
+            extra_rate: [],
+        }
+    }
+}
+
+/// Rotational constants: inertias, damping, and (J_k - J_j) / J_i of the gyroscopic torque, which a common scale of the true
+/// inertias leaves alone.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Attitude<R> {
+    inertia: [R; 3],
+    drag: R,
+    gyro: [R; 3],
+}
+
+impl<R: Real> Attitude<R> {
+    pub(crate) fn new(uav: &Uav) -> Self {
+        let j = uav.inertia_kg_m2;
+        Self {
+            inertia: j.map(R::from_f64),
+            drag: R::from_f64(uav.angular_drag_n_m_s),
+            gyro: std::array::from_fn(|i| R::from_f64((j[(i + 2) % 3] - j[(i + 1) % 3]) / j[i])),
+        }
+    }
+
+    /// Theta'' under a torque per true inertia, (3).
+    #[inline(always)]
+    fn acceleration<L: Lane<Real = R>>(
+        &self,
+        torque: [L; 3],
+        rate: [L; 3],
+        inverse_inertia: [L; 3],
+    ) -> [L; 3] {
+        let mut acceleration = torque;
+        for i in 0..3 {
+            let net = rate[i].mul_add(-L::splat(self.drag), torque[i]);
+            let gyroscopic = rate[(i + 1) % 3] * rate[(i + 2) % 3];
+            acceleration[i] = gyroscopic.mul_add(-L::splat(self.gyro[i]), net * inverse_inertia[i]);
+        }
+        acceleration
+    }
+}
+
+impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
+    const LIMITED: bool = false;
+
+    #[inline(always)]
+    fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
+        let zero = L::number(0.0);
+        let (mut error, mut error_rate, mut reference_acceleration) =
+            ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut command, mut torque) = ([zero; 3], [zero; 3]);
+        for i in 0..3 {
+            let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[i]);
+            error[i] = inputs.position[i] - r;
+            error_rate[i] = inputs.velocity[i] - r_rate;
+            reference_acceleration[i] = r_acceleration;
+            let demanded = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
+            command[i] = demanded.mul_add(inputs.command_gain[i], inputs.command_bias[i]);
+            torque[i] = command[i] + inputs.force[i];
+        }
+        Response {
+            error,
+            error_rate,
+            acceleration: self.acceleration(torque, inputs.velocity, *inputs.inverse_inertia),
+            reference_acceleration,
+            told: inputs.feedback,
+            command,
+            excess: [zero; 3],
+            extra_rate: [],
+        }
+    }
+}
+
+/// The whole UAV with thrust along its body axis, within limits (Remarks 6 and 11). Its own states are those of the command
+/// filter: roll, pitch and their rates.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Thrust<R> {
+    attitude: Attitude<R>,
+    mass: R,
+    inverse_mass: R,
+    drag: R,
+    gravity: R,
+    inverse_inertia: [R; 3],
+    filter: R,
+    max_thrust: R,
+    max_torque: R,
+    max_tilt: R,
+}
+
+impl<R: Real> Thrust<R> {
+    pub(crate) fn new(uav: &Uav) -> Self {
+        let real = R::from_f64;
+        Self {
+            attitude: Attitude::new(uav),
+            mass: real(uav.mass_kg),
+            inverse_mass: real(1.0 / uav.mass_kg),
+            drag: real(uav.drag_n_s_m),
+            gravity: real(uav.gravity_m_s2),
+            inverse_inertia: uav.inertia_kg_m2.map(|inertia| real(1.0 / inertia)),
+            filter: real(uav.command_filter_rad_s),
+            max_thrust: real(uav.max_thrust_n),
+            max_torque: real(uav.max_torque_n_m),
+            max_tilt: real(uav.max_tilt_rad),
+        }
+    }
+}
+
+/// R(Theta) [0 0 1]', (3).
+#[inline(always)]
+fn body_axis<L: Lane>(roll: L, pitch: L, (sin_yaw, cos_yaw): (L, L)) -> [L; 3] {
+    let ((sin_roll, cos_roll), (sin_pitch, cos_pitch)) = (roll.sin_cos(), pitch.sin_cos());
+    let forward = sin_pitch * cos_roll;
+    [
+        cos_yaw.mul_add(forward, sin_yaw * sin_roll),
+        sin_yaw.mul_add(forward, -(cos_yaw * sin_roll)),
+        cos_pitch * cos_roll,
+    ]
+}
+
+/// A row of the reference table in every lane.
+#[inline(always)]
+fn splat_row<L: Lane>(row: &ReferenceRow<L::Real>) -> [L; 4] {
+    [
+        L::splat(row[0]),
+        L::splat(row[1]),
+        L::splat(row[2]),
+        L::splat(row[3]),
+    ]
+}
+
+#[inline(always)]
+fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
+    value.max(low).min(high)
+}
+
+impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
+    const LIMITED: bool = true;
+
+    #[inline(always)]
+    fn respond(&self, inputs: &Inputs<'_, L, 6>, extra: &[L; 4]) -> Response<L, 6, 4> {
+        let zero = L::number(0.0);
+        let [roll, pitch, roll_rate, pitch_rate] = *extra;
+        let [yaw, yaw_rate, yaw_acceleration, _] = splat_row::<L>(&inputs.reference[5]);
+        let (mut error, mut error_rate, mut reference_acceleration) =
+            ([zero; 6], [zero; 6], [zero; 6]);
+        let (mut told, mut command, mut excess, mut acceleration) =
+            ([zero; 6], [zero; 6], [zero; 6], [zero; 6]);
+
+        // The force that the position loop demands, (9).
+        let mut force = [zero; 3];
+        for i in 0..3 {
+            let feedforward = L::splat(inputs.reference[i][3]);
+            force[i] = inputs.feedback[i].mul_add(L::splat(self.mass), feedforward);
+        }
+        let [fx, fy, fz] = force;
+        let yaw_sin_cos = yaw.sin_cos();
+        let (sin_yaw, cos_yaw) = yaw_sin_cos;
+        // Its direction in the frame turned by the yaw reference is that of the commanded body axis (Remark 11).
+        let ahead = cos_yaw.mul_add(fx, sin_yaw * fy);
+        let aside = cos_yaw.mul_add(fy, -(sin_yaw * fx));
+        let upright = ahead.mul_add(ahead, fz * fz).sqrt();
+        let roll_wanted = -aside.atan2(upright);
+        let pitch_wanted = ahead.atan2(fz);
+        let tilt = L::splat(self.max_tilt);
+        let (roll_command, pitch_command) = (
+            clamp(roll_wanted, -tilt, tilt),
+            clamp(pitch_wanted, -tilt, tilt),
+        );
+        excess[0] = pitch_wanted - pitch_command;
+        excess[1] = roll_wanted - roll_command;
+
+        // Critically damped command filter: q'' = w^2 (command - q) - 2 w q'.
+        let w = L::splat(self.filter);
+        let roll_acceleration = (w * (roll_command - roll) - (roll_rate + roll_rate)) * w;
+        let pitch_acceleration = (w * (pitch_command - pitch) - (pitch_rate + pitch_rate)) * w;
+
+        // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
+        let thrust_wanted = fx.mul_add(fx, fy.mul_add(fy, fz * fz)).sqrt();
+        let thrust = clamp(thrust_wanted, zero, L::splat(self.max_thrust));
+        excess[2] = thrust_wanted - thrust;
+        let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
+        for i in 0..3 {
+            let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[i]);
+            error[i] = inputs.position[i] - r;
+            error_rate[i] = inputs.velocity[i] - r_rate;
+            reference_acceleration[i] = r_acceleration;
+            told[i] = thrust.mul_add(commanded_axis[i], -feedforward) * L::splat(self.inverse_mass);
+            command[i] = force[i].mul_add(inputs.command_gain[i], inputs.command_bias[i]);
+        }
+
+        // Torques: demanded along the filtered attitude, then limited.
+        let angles = [roll, pitch, yaw];
+        let rates = [roll_rate, pitch_rate, yaw_rate];
+        let accelerations = [roll_acceleration, pitch_acceleration, yaw_acceleration];
+        let limit = L::splat(self.max_torque);
+        let mut torque = [zero; 3];
+        for i in 0..3 {
+            let c = i + 3;
+            let inertia = L::splat(self.attitude.inertia[i]);
+            error[c] = inputs.position[c] - angles[i];
+            error_rate[c] = inputs.velocity[c] - rates[i];
+            reference_acceleration[c] = accelerations[i];
+            let gyroscopic =
+                rates[(i + 1) % 3] * rates[(i + 2) % 3] * L::splat(self.attitude.gyro[i]);
+            let non_inertial = gyroscopic.mul_add(inertia, rates[i] * L::splat(self.attitude.drag));
+            let wanted = (accelerations[i] + inputs.feedback[c]).mul_add(inertia, non_inertial);
+            let limited = clamp(wanted, -limit, limit);
+            excess[c] = wanted - limited;
+            told[c] = (limited - non_inertial)
+                .mul_add(L::splat(self.inverse_inertia[i]), -accelerations[i]);
+            command[c] = limited.mul_add(inputs.command_gain[c], inputs.command_bias[c]);
+            torque[i] = command[c] + inputs.force[c];
+        }
+
+        // What the faults leave of the thrust acts along the true body axis.
+        let applied = thrust.mul_add(inputs.command_gain[2], inputs.command_bias[2]);
+        let [_, _, _, true_roll, true_pitch, true_yaw] = inputs.position;
+        let true_axis = body_axis(true_roll, true_pitch, true_yaw.sin_cos());
+        for i in 0..3 {
+            let net = applied.mul_add(true_axis[i], inputs.force[i]);
+            let net = inputs.velocity[i].mul_add(-L::splat(self.drag), net);
+            let gravity = if i == 2 { L::splat(self.gravity) } else { zero };
+            acceleration[i] = net.mul_add(inputs.inverse_inertia[i], -gravity);
+        }
+        let [_, _, _, p, q, s] = inputs.velocity;
+        let [_, _, _, ix, iy, iz] = *inputs.inverse_inertia;
+        let angular = self.attitude.acceleration(torque, [p, q, s], [ix, iy, iz]);
+        acceleration[3..].copy_from_slice(&angular);
+        Response {
+            error,
+            error_rate,
+            acceleration,
+            reference_acceleration,
+            told,
+            command,
+            excess,
+            extra_rate: [roll_rate, pitch_rate, roll_acceleration, pitch_acceleration],
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The directory of a run: who may write there, and files that appear whole or not at all.
+
+use crate::manifest::Manifest;
+use crate::tables::Table;
+use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
+const ROW_GROUP: usize = 1 << 18;
+/// File name of the manifest, which is written last: a directory that has one holds a whole run.
+pub const MANIFEST: &str = "manifest.json";
+
+/// Why a run cannot be written or read.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The directory cannot be used.
+    #[error("{}: cannot be written ({source}); give another directory with --out", path.display())]
+    Unwritable {
+        /// The directory or file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The directory holds something else.
+    #[error("{}: holds {what}; give another directory with --out, or replace it with --overwrite", path.display())]
+    Taken {
+        /// The directory.
+        path: PathBuf,
+        /// What it holds.
+        what: String,
+    },
+    /// The directory does not hold a run, or not a whole one.
+    #[error("{}: holds no readable run ({reason}); name the output directory of a finished run", path.display())]
+    NoRun {
+        /// The directory.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A table cannot be encoded.
+    #[error("{}: the table cannot be encoded", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: PolarsError,
+    },
+}
+
+impl OutputError {
+    /// Whether another `--out` would help: such errors are bad usage.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        !matches!(self, Self::Table { .. })
+    }
+}
+
+/// A directory that this run may write.
+#[derive(Debug, Clone)]
+pub struct OutputDir(PathBuf);
+
+impl OutputDir {
+    /// Claims a directory before any work is done. It may be absent, empty, or hold a run of the same campaign text;
+    /// anything else is refused unless `overwrite`.
+    ///
+    /// # Errors
+    /// If the directory holds something else or cannot be written. Nothing is left behind then.
+    pub fn claim(path: &Path, campaign_hash: &str, overwrite: bool) -> Result<Self, OutputError> {
+        let taken = |what: String| OutputError::Taken {
+            path: path.to_path_buf(),
+            what,
+        };
+        if path.exists() && !path.is_dir() {
+            return Err(taken("a file, not a directory".into()));
+        }
+        let occupied =
+            path.is_dir() && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
+        if occupied && !overwrite {
+            match Manifest::read(path) {
+                Ok(manifest) if manifest.campaign_blake3 == campaign_hash => {}
+                Ok(manifest) => {
+                    return Err(taken(format!(
+                        "a run of another campaign text ({:?})",
+                        manifest.name
+                    )));
+                }
+                Err(_) => return Err(taken("files that are not a run's".into())),
+            }
+        }
+        let created = !path.exists();
+        let unwritable = |source| OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source,
+        };
+        fs::create_dir_all(path).map_err(unwritable)?;
+        let probe = path.join(".urts-mc-probe");
+        let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
+        // The directory is made again when the first file is written; a run that fails before leaves none behind.
+        if created {
+            fs::remove_dir(path).map_err(unwritable)?;
+        }
+        tried.map_err(unwritable)?;
+        Ok(Self(path.to_path_buf()))
+    }
+
+    /// A directory that exists already, for an additional file.
+    #[must_use]
+    pub fn existing(path: &Path) -> Self {
+        Self(path.to_path_buf())
+    }
+
+    /// The directory.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Writes a file under its final name only when it is complete.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
+        self.write_with(name, |file| file.write_all(content))
+    }
+
+    /// Writes a table as Parquet.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_parquet(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+        self.write_table(name, table, |file, frame| {
+            ParquetWriter::new(file)
+                .with_compression(ParquetCompression::Snappy)
+                .with_row_group_size(Some(ROW_GROUP))
+                .finish(frame)
+                .map(|_| ())
+        })
+    }
+
+    /// Writes a table as CSV.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_csv(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+        self.write_table(name, table, |file, frame| {
+            CsvWriter::new(file).finish(frame)
+        })
+    }
+
+    fn write_table(
+        &self,
+        name: &str,
+        table: &Table,
+        encode: impl FnOnce(
+            &mut BufWriter<File>,
+            &mut polars::prelude::DataFrame,
+        ) -> Result<(), PolarsError>,
+    ) -> Result<(), OutputError> {
+        let broken = |source| OutputError::Table {
+            path: self.0.join(name),
+            source,
+        };
+        let mut frame = table.to_frame().map_err(broken)?;
+        let mut encoded = Ok(());
+        self.write_with(name, |file| {
+            encoded = encode(file, &mut frame);
+            Ok(())
+        })?;
+        encoded.map_err(broken)
+    }
+
+    fn write_with(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let (part, whole) = (self.0.join(format!(".{name}.part")), self.0.join(name));
+        let written = fs::create_dir_all(&self.0)
+            .and_then(|()| File::create(&part))
+            .map(BufWriter::new)
+            .and_then(|mut file| fill(&mut file).and_then(|()| file.flush()))
+            .and_then(|()| fs::rename(&part, &whole));
+        written.map_err(|source| OutputError::Unwritable {
+            path: whole,
+            source,
+        })
+    }
+
+    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled.
+    ///
+    /// # Errors
+    /// If there is one and it cannot be removed.
+    pub fn begin(&self) -> Result<(), OutputError> {
+        let manifest = self.0.join(MANIFEST);
+        if !manifest.exists() {
+            return Ok(());
+        }
+        fs::remove_file(&manifest).map_err(|source| OutputError::Unwritable {
+            path: manifest,
+            source,
+        })
+    }
+}

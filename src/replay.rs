@@ -1,0 +1,160 @@
+//! One episode of a run again, with its trajectories.
+
+use crate::backend::cpu::Cpu;
+use crate::campaign::{Campaign, CampaignError, UAV_CHANNELS};
+use crate::gains::{GainSet, GainsError};
+use crate::manifest::Manifest;
+use crate::model::Shown;
+use crate::model::episode::{AgentOutcome, Snapshot};
+use crate::output::OutputError;
+use crate::tables::Table;
+use std::path::Path;
+use thiserror::Error;
+
+/// Why an episode cannot be replayed.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// The directory holds no run.
+    #[error(transparent)]
+    Run(#[from] OutputError),
+    /// The run's campaign cannot be read any more.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    /// The run's gains cannot be read any more.
+    #[error(transparent)]
+    Gains(#[from] GainsError),
+    /// There is no such episode, controller or rate.
+    #[error("{option} {value}: {limit}; {remedy}")]
+    Usage {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// The limit that it breaks.
+        limit: String,
+        /// What to do instead.
+        remedy: String,
+    },
+}
+
+/// An episode flown again.
+#[derive(Debug)]
+pub struct Replay {
+    /// The run's campaign.
+    pub campaign: Campaign,
+    /// How each agent ended; equal to the run's rows.
+    pub outcomes: Vec<AgentOutcome>,
+    /// What every agent and channel showed.
+    pub snapshots: Vec<Snapshot>,
+}
+
+/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and shows it
+/// every `interval_s`.
+///
+/// # Errors
+/// If the directory holds no run, or the run has no such episode or controller.
+pub fn replay(
+    dir: &Path,
+    episode: u32,
+    controller: &str,
+    interval_s: f64,
+) -> Result<Replay, ReplayError> {
+    let manifest = Manifest::read(dir)?;
+    let mut campaign = Campaign::parse(&manifest.campaign, Path::new(&manifest.campaign_path))?;
+    campaign.seed = manifest.seed;
+    campaign.episodes = manifest.episodes;
+    if episode >= campaign.episodes {
+        return Err(ReplayError::Usage {
+            option: "--episode",
+            value: episode.to_string(),
+            limit: format!(
+                "the run has {} episodes, numbered from 0",
+                campaign.episodes
+            ),
+            remedy: format!("use 0 to {}", campaign.episodes - 1),
+        });
+    }
+    let index = campaign
+        .controllers
+        .iter()
+        .position(|name| name == controller)
+        .ok_or_else(|| ReplayError::Usage {
+            option: "--controller",
+            value: controller.to_string(),
+            limit: "the run has no such controller".to_string(),
+            remedy: format!("use one of {}", campaign.controllers.join(", ")),
+        })?;
+    let every = (interval_s / campaign.time.step_s).round();
+    if !(every >= 1.0 && every <= f64::from(campaign.time.steps)) {
+        return Err(ReplayError::Usage {
+            option: "--interval",
+            value: interval_s.to_string(),
+            limit: format!(
+                "samples are whole steps of {} s apart",
+                campaign.time.step_s
+            ),
+            remedy: "use a multiple of the step within the episode's length".to_string(),
+        });
+    }
+    let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
+    let cpu = Cpu::new(&campaign, &gains.loops(), manifest.precision, manifest.simd);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked to lie within the steps"
+    )]
+    let (outcomes, snapshots) = cpu.trace(episode, index, every as u32);
+    Ok(Replay {
+        campaign,
+        outcomes,
+        snapshots,
+    })
+}
+
+impl Replay {
+    /// The trajectories as a table: a row per instant, agent and channel.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let mut table = Table::default();
+        for snapshot in &self.snapshots {
+            for (agent, channels) in snapshot.agents.iter().enumerate() {
+                for (channel, shown) in UAV_CHANNELS.iter().zip(channels) {
+                    let Shown {
+                        r,
+                        x,
+                        e,
+                        e_rate,
+                        e_hat,
+                        f1,
+                        f1_hat,
+                        f2,
+                        f2_hat,
+                        u,
+                    } = *shown;
+                    let mut row = table.row();
+                    row.real(
+                        || "t_s".into(),
+                        f64::from(snapshot.step) * self.campaign.time.step_s,
+                    )
+                    .count(|| "agent".into(), agent as u32)
+                    .word(|| "channel".into(), channel);
+                    for (name, value) in [
+                        ("r", r),
+                        ("x", x),
+                        ("e", e),
+                        ("e_rate", e_rate),
+                        ("e_hat", e_hat),
+                        ("f1", f1),
+                        ("f1_hat", f1_hat),
+                        ("f2", f2),
+                        ("f2_hat", f2_hat),
+                        ("u", u),
+                    ] {
+                        row.real(|| name.into(), value);
+                    }
+                }
+            }
+        }
+        table
+    }
+}

@@ -1,0 +1,86 @@
+//! Statistics of a campaign: what the verdicts and metrics of its episodes say about the controllers.
+//!
+//! The sample unit is the episode, and the episodes are independent draws; every function here is
+//! pure, deterministic and free of random numbers. A diverged episode carries a metric of `+inf`
+//! (it ranks worst), so ranks decide wherever a mean would not survive it. No function returns
+//! NaN: where nothing can be said the answer is `None` or the widest interval.
+//!
+//! | question | function | method |
+//! |---|---|---|
+//! | how often does a controller fail? | [`wilson`], [`clopper_pearson`] | score and exact binomial |
+//! | what can be claimed about its failure rate? | [`clopper_pearson_upper`] | exact one-sided bound |
+//! | how bad is its 95th percentile? | [`quantile()`], [`quantile_interval`] | order statistics |
+//! | does A fail less often than B? | [`mcnemar_mid_p`], [`paired_difference`] | mid-p, Tango's score |
+//! | by how much is A's metric better? | [`median_bca`] | BCa with the ideal bootstrap |
+//! | in which share of episodes is A better? | [`win_rate`] | Tango's score |
+//!
+//! Counts beyond their total are read as the total. A `level` is a two-sided confidence level in
+//! (0, 1) unless a function says otherwise; any other level is a demand for certainty, which only
+//! the widest interval (or `None`) meets.
+
+mod binomial;
+mod median;
+mod paired;
+mod proportion;
+mod quantile;
+
+pub use median::median_bca;
+pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
+pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
+pub use quantile::{quantile, quantile_interval};
+
+/// A confidence interval; both ends belong to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower limit; `-inf` where the data set none.
+    pub lower: f64,
+    /// Upper limit; `+inf` where the data set none.
+    pub upper: f64,
+}
+
+/// A point estimate with its confidence interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Point estimate.
+    pub value: f64,
+    /// Confidence interval of the estimated quantity.
+    pub interval: Interval,
+}
+
+fn is_level(level: f64) -> bool {
+    0.0 < level && level < 1.0
+}
+
+/// The z with P(|Z| <= z) = `level` for a standard normal Z.
+fn two_sided_z(level: f64) -> f64 {
+    std::f64::consts::SQRT_2 * statrs::function::erf::erfc_inv(1.0 - level)
+}
+
+/// The smallest rank in `1..=n` for which `holds`; `holds` must stay true once it is.
+fn first_rank(n: usize, holds: impl Fn(usize) -> bool) -> Option<usize> {
+    let (mut first, mut end) = (1, n + 1);
+    while first < end {
+        let middle = usize::midpoint(first, end);
+        if holds(middle) {
+            end = middle;
+        } else {
+            first = middle + 1;
+        }
+    }
+    (first <= n).then_some(first)
+}
+
+/// The point of [`lower`, `upper`] where `is_below` changes from true to false, to the last bit.
+fn bisect(mut lower: f64, mut upper: f64, is_below: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = f64::midpoint(lower, upper);
+        if middle <= lower || upper <= middle {
+            return upper;
+        }
+        if is_below(middle) {
+            lower = middle;
+        } else {
+            upper = middle;
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Stability margins of one controller on one channel, loop broken at the plant input.
+
+use super::channel::{Channel, error_channel};
+use super::gains::ControllerGains;
+use nalgebra::{Complex, DMatrix};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+
+/// Frequencies the sweeps cover, rad/s: the slowest integral modes to well above every observer pole.
+const SWEEP_RAD_S: [f64; 2] = [1e-4, 1e5];
+const POINTS_PER_DECADE: u32 = 60;
+
+/// Margins of the loop u -> e'' = u -> y -> observer -> K ehat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Margins {
+    /// Largest magnitude Ms of the sensitivity 1 / (1 + loop gain).
+    pub sensitivity_peak: f64,
+    /// Smallest phase margin over all gain crossovers, degrees.
+    pub phase_margin_deg: f64,
+    /// Smallest dead time that destabilises the loop, ms.
+    pub delay_margin_ms: f64,
+    /// Gain crossover at which the delay margin is taken, rad/s.
+    pub crossover_rad_s: f64,
+}
+
+/// Margins of `gains` on a channel with as many states; `None` if the loop
+/// gain never crosses one, which no stable loop around integrators does.
+pub(super) fn margins(channel: &Channel, gains: &ControllerGains) -> Option<Margins> {
+    let response = LoopGain::of(channel, gains);
+    let loop_gain = |omega: f64| response.at(omega);
+    let sensitivity = |omega: f64| Some((loop_gain(omega)? + 1.0).norm().recip());
+    let grid = sweep();
+    let (_, sensitivity_peak) = peak(&grid, sensitivity)?;
+
+    let mut phase_margin_rad = f64::INFINITY;
+    let mut delay_margin_s = f64::INFINITY;
+    let mut crossover_rad_s = None;
+    for pair in grid.windows(2) {
+        let above = |omega: f64| Some(loop_gain(omega)?.norm() > 1.0);
+        let (mut low, mut high) = (pair[0], pair[1]);
+        let start = above(low)?;
+        if start == above(high)? {
+            continue;
+        }
+        while high / low > 1.0 + 1e-12 {
+            let middle = (low * high).sqrt();
+            if above(middle)? == start {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let phase = (loop_gain(high)?.arg() + PI).rem_euclid(TAU);
+        // The phase may be lost by lag (delay) or, above 180 degrees, by lead.
+        phase_margin_rad = phase_margin_rad.min(phase.min(TAU - phase));
+        if phase / high < delay_margin_s {
+            delay_margin_s = phase / high;
+            crossover_rad_s = Some(high);
+        }
+    }
+    Some(Margins {
+        sensitivity_peak,
+        phase_margin_deg: phase_margin_rad.to_degrees(),
+        delay_margin_ms: delay_margin_s * 1e3,
+        crossover_rad_s: crossover_rad_s?,
+    })
+}
+
+/// The loop gain with the sign of negative feedback.
+struct LoopGain {
+    plant: Channel,
+    /// Abar + Bbar K + L Cbar.
+    observer: DMatrix<Complex<f64>>,
+    k: DMatrix<Complex<f64>>,
+    l: DMatrix<Complex<f64>>,
+}
+
+impl LoopGain {
+    fn of(channel: &Channel, gains: &ControllerGains) -> Self {
+        let (k, l) = (gains.k_matrix(), gains.l_matrix());
+        let observer = &channel.a + &channel.b * &k + &l * &channel.c;
+        Self {
+            plant: error_channel(),
+            observer: observer.map(Complex::from),
+            k: k.map(Complex::from),
+            l: l.map(Complex::from),
+        }
+    }
+
+    fn at(&self, omega: f64) -> Option<Complex<f64>> {
+        let error = resolvent(&self.plant.a.map(Complex::from), omega)
+            .solve(&self.plant.b.map(Complex::from))?;
+        // u = K (jw - Abar - Bbar K - L Cbar)^-1 (-L) y, with y = C0 e.
+        let estimate = resolvent(&self.observer, omega).solve(&(&self.l * error))?;
+        Some((&self.k * estimate)[(0, 0)])
+    }
+}
+
+/// The factored matrix j omega I - A.
+pub(super) fn resolvent(
+    a: &DMatrix<Complex<f64>>,
+    omega: f64,
+) -> nalgebra::LU<Complex<f64>, nalgebra::Dyn, nalgebra::Dyn> {
+    let n = a.nrows();
+    (DMatrix::from_diagonal_element(n, n, Complex::new(0.0, omega)) - a).lu()
+}
+
+/// A logarithmic grid of frequencies, rad/s.
+pub(super) fn sweep() -> Vec<f64> {
+    let [low, high] = SWEEP_RAD_S.map(f64::log10);
+    let step = f64::from(POINTS_PER_DECADE).recip();
+    let mut grid = Vec::new();
+    for i in 0.. {
+        let exponent = low + f64::from(i) * step;
+        if exponent > high + step / 2.0 {
+            break;
+        }
+        grid.push(10.0_f64.powf(exponent));
+    }
+    grid
+}
+
+/// The largest value over the grid, refined between the neighbours of the
+/// largest sample: (frequency, value).
+pub(super) fn peak(grid: &[f64], value: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
+    let samples: Vec<f64> = grid.iter().map(|&w| value(w)).collect::<Option<_>>()?;
+    let (best, _) = samples
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(b.1))?;
+    let mut low = grid[best.saturating_sub(1)].ln();
+    let mut high = grid[(best + 1).min(grid.len() - 1)].ln();
+    // Golden section in the logarithm of the frequency.
+    let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
+    while high - low > 1e-9 {
+        let left = high - ratio * (high - low);
+        let right = low + ratio * (high - low);
+        if value(left.exp())? > value(right.exp())? {
+            high = right;
+        } else {
+            low = left;
+        }
+    }
+    let refined = ((low + high) / 2.0).exp();
+    let at_refined = value(refined)?;
+    match at_refined > samples[best] {
+        true => Some((refined, at_refined)),
+        false => Some((grid[best], samples[best])),
+    }
+}

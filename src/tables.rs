@@ -1,0 +1,383 @@
+//! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
+
+use crate::backend::cpu::Flown;
+use crate::campaign::{Campaign, Time, UAV_CHANNELS};
+use crate::draw::AgentDraw;
+use crate::model::episode::AgentOutcome;
+use crate::model::metric::ChannelOutcome;
+use polars::prelude::{
+    Column, DataFrame, Float64Chunked, IntoColumn, NamedFrom, NewChunkedArray, PlSmallStr,
+    PolarsError, Series,
+};
+
+/// How an agent or an episode ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Within the limits.
+    Ok,
+    /// Finite, but a limit of the verdict was broken.
+    Exceeded,
+    /// Left the numbers; ranks worst in every comparison.
+    Diverged,
+}
+
+impl Status {
+    /// The word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Exceeded => "exceeded",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+/// A table under construction: columns are made by the first row, and every row fills them in the same order.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    columns: Vec<(String, Values)>,
+}
+
+/// A column under construction. A real that is not a number stands for "does not apply" and becomes a null.
+#[derive(Debug, Clone)]
+enum Values {
+    Real(Vec<f64>),
+    Count(Vec<u32>),
+    Word(Vec<&'static str>),
+    Name(Vec<String>),
+    Flag(Vec<bool>),
+}
+
+/// A row being added to a [`Table`].
+pub struct Row<'a> {
+    table: &'a mut Table,
+    next: usize,
+}
+
+macro_rules! cell {
+    ($(#[$doc:meta])* $method:ident, $variant:ident, $value:ty) => {
+        $(#[$doc])*
+        pub fn $method(&mut self, name: impl FnOnce() -> String, value: $value) -> &mut Self {
+            if self.next == self.table.columns.len() {
+                self.table.columns.push((name(), Values::$variant(Vec::new())));
+            }
+            if let Some((_, Values::$variant(values))) = self.table.columns.get_mut(self.next) {
+                values.push(value);
+            }
+            self.next += 1;
+            self
+        }
+    };
+}
+
+impl Row<'_> {
+    cell!(/// A real number; not a number where it does not apply.
+        real, Real, f64);
+    cell!(/// A number of things.
+        count, Count, u32);
+    cell!(/// A word of a fixed list.
+        word, Word, &'static str);
+    cell!(/// A name.
+        name, Name, String);
+    cell!(/// Yes or no.
+        flag, Flag, bool);
+
+    /// A real number where it applies.
+    pub fn real_if(&mut self, name: &str, value: Option<f64>) -> &mut Self {
+        self.real(|| name.to_string(), value.unwrap_or(f64::NAN))
+    }
+}
+
+impl Table {
+    /// Begins a row.
+    pub fn row(&mut self) -> Row<'_> {
+        Row {
+            table: self,
+            next: 0,
+        }
+    }
+
+    /// The finished table.
+    ///
+    /// # Errors
+    /// If the rows did not all fill the same columns.
+    pub fn to_frame(&self) -> Result<DataFrame, PolarsError> {
+        let columns = self.columns.iter().map(|(name, values)| {
+            let name = PlSmallStr::from_str(name);
+            match values {
+                Values::Real(values) => {
+                    let present = values
+                        .iter()
+                        .map(|value| (!value.is_nan()).then_some(*value));
+                    Float64Chunked::from_iter_options(name, present).into_column()
+                }
+                Values::Count(values) => Series::new(name, values).into_column(),
+                Values::Word(values) => Series::new(name, values).into_column(),
+                Values::Name(values) => Series::new(name, values).into_column(),
+                Values::Flag(values) => Series::new(name, values).into_column(),
+            }
+        });
+        DataFrame::new_infer_height(columns.collect::<Vec<Column>>())
+    }
+}
+
+/// The tables of a run, and the numbers that its statistics read.
+#[derive(Debug, Clone)]
+pub struct Tables {
+    /// A row per episode, controller and agent.
+    pub episodes: Table,
+    /// A row per episode, controller, agent and channel.
+    pub channels: Table,
+    /// What the statistics read.
+    pub scores: Scores,
+}
+
+/// The numbers that the statistics of a run read. Episodes are in order; so are controllers, agents and channels.
+#[derive(Debug, Clone, Default)]
+pub struct Scores {
+    /// Worst status of the team, `[controller][episode]`.
+    pub status: Vec<Vec<Status>>,
+    /// RMS error, `[controller]` then episode, agent, channel in one list.
+    pub rmse: Vec<Vec<f64>>,
+    /// Largest error, laid out like `rmse`.
+    pub max_abs: Vec<Vec<f64>>,
+    /// Whether an agent of the episode has the fault, `[fault][episode]`.
+    pub fault_occurs: Vec<Vec<bool>>,
+}
+
+impl Tables {
+    /// Empty tables of a campaign.
+    #[must_use]
+    pub fn new(campaign: &Campaign) -> Self {
+        let controllers = campaign.controllers.len();
+        Self {
+            episodes: Table::default(),
+            channels: Table::default(),
+            scores: Scores {
+                status: vec![Vec::new(); controllers],
+                rmse: vec![Vec::new(); controllers],
+                max_abs: vec![Vec::new(); controllers],
+                fault_occurs: vec![Vec::new(); campaign.faults.len()],
+            },
+        }
+    }
+
+    /// Adds an episode; episodes are added in order.
+    pub fn add(&mut self, campaign: &Campaign, flown: &Flown) {
+        let draws = &flown.episode.agents;
+        for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
+            occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
+        }
+        for (controller, (name, outcomes)) in
+            campaign.controllers.iter().zip(&flown.outcomes).enumerate()
+        {
+            let agents: Vec<Judged<'_>> = outcomes
+                .iter()
+                .zip(draws)
+                .map(|(outcome, draw)| Judged::new(campaign, outcome, draw))
+                .collect();
+            let worst = agents
+                .iter()
+                .map(|agent| agent.status)
+                .max()
+                .unwrap_or(Status::Ok);
+            self.scores.status[controller].push(worst);
+            for (agent, judged) in agents.iter().enumerate() {
+                let key = |row: &mut Row<'_>| {
+                    row.count(|| "episode".into(), flown.episode.index)
+                        .name(|| "controller".into(), name.clone())
+                        .count(|| "agent".into(), agent as u32);
+                };
+                let mut row = self.episodes.row();
+                key(&mut row);
+                judged.write_agent(&mut row, campaign, worst, &draws[agent]);
+                for (channel, outcome) in judged.outcome.channels.iter().enumerate() {
+                    let mut row = self.channels.row();
+                    key(&mut row);
+                    judged.write_channel(&mut row, campaign.time, channel, outcome);
+                    self.scores.rmse[controller].push(outcome.rmse);
+                    self.scores.max_abs[controller].push(outcome.max_abs);
+                }
+            }
+        }
+    }
+}
+
+/// An agent's outcome and what the verdict makes of it.
+struct Judged<'a> {
+    outcome: &'a AgentOutcome,
+    status: Status,
+    /// The step of the agent's first fault that does not begin with the run.
+    first_fault: Option<u32>,
+}
+
+impl<'a> Judged<'a> {
+    fn new(campaign: &Campaign, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
+        let verdict = &campaign.verdict;
+        let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
+            metrics.max_abs > verdict.max_error[channel] || metrics.rmse > verdict.max_rmse[channel]
+        };
+        let status = if outcome.diverged {
+            Status::Diverged
+        } else if outcome.channels.iter().enumerate().any(too_large) {
+            Status::Exceeded
+        } else {
+            Status::Ok
+        };
+        Self {
+            outcome,
+            status,
+            first_fault: crate::model::episode::later_onsets(campaign, draw)
+                .into_iter()
+                .min(),
+        }
+    }
+
+    fn write_agent(&self, row: &mut Row<'_>, campaign: &Campaign, worst: Status, draw: &AgentDraw) {
+        let failed_at_s = match (self.status, self.outcome.failed_step) {
+            (Status::Ok, _) => None,
+            (_, Some(step)) => Some(f64::from(step) * campaign.time.step_s),
+            // A limit on the RMS error is judged, and an overflow of a sum is seen, at the end.
+            (_, None) => Some(f64::from(campaign.time.steps) * campaign.time.step_s),
+        };
+        row.word(|| "status".into(), self.status.word())
+            .word(|| "episode_status".into(), worst.word())
+            .real_if("failed_at_s", failed_at_s);
+        for (group, channels) in campaign.channel_groups() {
+            let channels = &self.outcome.channels[channels.clone()];
+            let mean_square = channels
+                .iter()
+                .map(|metrics| metrics.rmse.powi(2))
+                .sum::<f64>()
+                / channels.len() as f64;
+            let largest = channels
+                .iter()
+                .map(|metrics| metrics.max_abs)
+                .fold(0.0, f64::max);
+            row.real(|| format!("rmse_{group}"), self.finite(mean_square.sqrt()))
+                .real(|| format!("max_abs_{group}"), self.finite(largest));
+        }
+        let all = &self.outcome.channels;
+        let slowest = |time: fn(&Self, Time, &ChannelOutcome) -> Option<f64>| {
+            all.iter()
+                .map(|metrics| time(self, campaign.time, metrics))
+                .try_fold(0.0, |worst, own| own.map(|own| f64::max(worst, own)))
+        };
+        row.real_if("settling_s", slowest(Self::settling_s))
+            .real_if("recovery_s", slowest(Self::recovery_s))
+            .real(
+                || "saturated_fraction".into(),
+                all.iter()
+                    .map(|metrics| metrics.saturated_fraction)
+                    .fold(0.0, f64::max),
+            );
+        write_draw(row, campaign, draw);
+    }
+
+    fn write_channel(
+        &self,
+        row: &mut Row<'_>,
+        time: Time,
+        channel: usize,
+        metrics: &ChannelOutcome,
+    ) {
+        row.word(|| "channel".into(), UAV_CHANNELS[channel])
+            .real(|| "rmse".into(), self.finite(metrics.rmse))
+            .real(|| "max_abs".into(), self.finite(metrics.max_abs))
+            .real(|| "ise".into(), self.finite(metrics.ise))
+            .real(|| "iae".into(), self.finite(metrics.iae))
+            .real_if("settling_s", self.settling_s(time, metrics))
+            .real_if("recovery_s", self.recovery_s(time, metrics))
+            .real(|| "effort".into(), self.finite(metrics.effort))
+            .real(|| "u_max".into(), self.finite(metrics.u_max))
+            .real(|| "saturated_fraction".into(), metrics.saturated_fraction)
+            .real(|| "f1_rms_error".into(), self.finite(metrics.f1_rms_error))
+            .real(|| "f2_rms_error".into(), self.finite(metrics.f2_rms_error));
+    }
+
+    /// A metric, or "does not apply" after a divergence: no average may take it in.
+    fn finite(&self, value: f64) -> f64 {
+        if self.outcome.diverged || !value.is_finite() {
+            f64::NAN
+        } else {
+            value
+        }
+    }
+
+    /// When the error went below the settled error for good, before the first fault; absent if it did not.
+    fn settling_s(&self, time: Time, metrics: &ChannelOutcome) -> Option<f64> {
+        let (end, last) = match self.first_fault {
+            Some(step) => (step, metrics.last_outside_before_fault),
+            None => (time.steps, metrics.last_outside),
+        };
+        self.calm_from(last, end)
+            .map(|step| f64::from(step) * time.step_s)
+    }
+
+    /// How long after the first fault the error went below the settled error for good; absent without a fault or if it did not.
+    fn recovery_s(&self, time: Time, metrics: &ChannelOutcome) -> Option<f64> {
+        let fault = self.first_fault?;
+        let calm = self.calm_from(metrics.last_outside, time.steps)?;
+        Some(f64::from(calm.saturating_sub(fault)) * time.step_s)
+    }
+
+    fn calm_from(&self, last_outside: Option<u32>, end: u32) -> Option<u32> {
+        let calm = last_outside.map_or(0, |step| step + 1);
+        (calm < end && !self.outcome.diverged).then_some(calm)
+    }
+}
+
+/// Every effective parameter of an agent.
+fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
+    row.real(|| "mass_scale".into(), draw.mass_scale)
+        .real(|| "inertia_scale".into(), draw.inertia_scale)
+        .real(|| "kappa".into(), draw.kappa);
+    let initial = [
+        ("error", &draw.error),
+        ("error_rate", &draw.error_rate),
+        ("error_integral", &draw.error_integral),
+    ];
+    for (name, values) in initial {
+        write_channels(row, values, |channel| format!("initial_{name}_{channel}"));
+    }
+    for (index, (disturbance, values)) in campaign
+        .disturbances
+        .iter()
+        .zip(&draw.disturbances)
+        .enumerate()
+    {
+        for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
+            write_channels(row, values, |channel| {
+                format!("disturbance{index}_{}_{channel}", parameter.name)
+            });
+        }
+    }
+    for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
+        row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
+        row.real(
+            || format!("fault{index}_onset_s"),
+            if drawn.occurs() {
+                drawn.onset_s
+            } else {
+                f64::NAN
+            },
+        );
+        for (parameter, values) in fault.kind.parameters().iter().zip(&drawn.parameters) {
+            let applied: Vec<f64> = values
+                .iter()
+                .zip(&drawn.strikes)
+                .map(|(value, strikes)| if *strikes { *value } else { f64::NAN })
+                .collect();
+            write_channels(row, &applied, |channel| {
+                format!("fault{index}_{}_{channel}", parameter.name)
+            });
+        }
+    }
+}
+
+fn write_channels(row: &mut Row<'_>, values: &[f64], name: impl Fn(&str) -> String) {
+    for (value, channel) in values.iter().zip(UAV_CHANNELS) {
+        row.real(|| name(channel), *value);
+    }
+}
