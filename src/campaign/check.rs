@@ -359,7 +359,12 @@ impl Check<'_> {
             }
             Value::Distribution(file) => file,
             Value::List(_) => {
-                return Err(self.invalid(key, "a list of lists", "lists do not nest", "flatten it"));
+                return Err(self.invalid(
+                    key,
+                    "a list of lists",
+                    "lists do not nest",
+                    "flatten it",
+                ));
             }
         };
         let range = |form: &str, [low, high]: [f64; 2]| {

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 /// States of the error part: the integral of e, e and e'.
 pub const ERROR_STATES: usize = 3;
 
-/// A linear channel x' = A x + B u + E v, y = C x, with u the feedback acceleration.
+/// A linear channel x' = A x + B u, y = C x, with u the feedback acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// System matrix, s x s.
@@ -19,6 +19,7 @@ pub struct Channel {
 }
 
 /// The error channel (15) alone: A0, B0, C0.
+#[must_use]
 pub fn error_channel() -> Channel {
     Channel {
         a: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
@@ -28,12 +29,14 @@ pub fn error_channel() -> Channel {
 }
 
 /// The augmented channel (19), all taps: the states are [int e, e, e', F1, F2].
+#[must_use]
 pub fn augmented_channel(design: &ChannelDesign) -> Channel {
     channel_with_taps(design, design.smoothing.taps())
 }
 
 /// The augmented channel without the delay lines, which never feed back: the
 /// same transfer functions with fewer states.
+#[must_use]
 pub fn reduced_channel(design: &ChannelDesign) -> Channel {
     let active = design.smoothing.active_taps();
     channel_with_taps(design, [active, active])
@@ -69,10 +72,7 @@ fn channel_with_taps(design: &ChannelDesign, [taps1, taps2]: [usize; 2]) -> Chan
 /// Q1 of (24) on all states: the weights on the error, zero on the faults.
 pub(super) fn tracking_weight(design: &ChannelDesign) -> DMatrix<f64> {
     let states = design.states();
-    DMatrix::from_fn(states, states, |i, j| match i == j && i < ERROR_STATES {
-        true => design.q1[i],
-        false => 0.0,
-    })
+    diagonal(&design.q1).resize(states, states, 0.0)
 }
 
 /// Q2 of (24) on all states.

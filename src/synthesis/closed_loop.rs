@@ -90,9 +90,10 @@ impl ClosedLoop {
         };
         let at_rest = gain(0.0)?;
         let (peak_rad_s, peak_gain) = peak(&sweep(), gain)?;
-        match peak_gain > at_rest {
-            true => Some((peak_gain, peak_rad_s)),
-            false => Some((at_rest, 0.0)),
-        }
+        Some(if peak_gain > at_rest {
+            (peak_gain, peak_rad_s)
+        } else {
+            (at_rest, 0.0)
+        })
     }
 }

@@ -33,6 +33,7 @@ pub struct ChannelDesign {
 
 impl ChannelDesign {
     /// Number of states s = 3 + (w1 + 1) + (w2 + 1) of the augmented channel.
+    #[must_use]
     pub fn states(&self) -> usize {
         3 + self.smoothing.taps().iter().sum::<usize>()
     }
@@ -142,6 +143,7 @@ impl ChannelDesign {
 /// Q2 that falls by ten from tap to tap, as Section V lists it.
 ///
 /// `error` weighs int e, e and e'; `fault1` and `fault2` weigh the newest taps.
+#[must_use]
 pub fn geometric_q2(smoothing: &Smoothing, error: [f64; 3], fault1: f64, fault2: f64) -> Vec<f64> {
     let [taps1, taps2] = smoothing.taps();
     let falling = |first: f64, taps: usize| {

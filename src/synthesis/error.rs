@@ -129,9 +129,10 @@ fn infeasible_remedy(smallest_rho: Option<f64>, remedy: &str) -> String {
 fn rounded_up(x: f64) -> f64 {
     let unit = 10.0_f64.powf(x.log10().floor() - 3.0);
     // Divide by a whole number where possible, so that the result prints short.
-    match unit < 1.0 {
-        true => (x / unit).ceil() / unit.recip().round(),
-        false => (x / unit).ceil() * unit,
+    if unit < 1.0 {
+        (x / unit).ceil() / unit.recip().round()
+    } else {
+        (x / unit).ceil() * unit
     }
 }
 
@@ -141,7 +142,7 @@ mod tests {
 
     #[test]
     fn smallest_rho_is_printed_on_the_feasible_side() {
-        assert_eq!(rounded_up(1.414_213).to_string(), "1.415");
+        assert_eq!(rounded_up(1.314_213).to_string(), "1.315");
         assert_eq!(rounded_up(29.1706).to_string(), "29.18");
         assert_eq!(rounded_up(0.012_341).to_string(), "0.01235");
         assert_eq!(rounded_up(123_456.0).to_string(), "123500");

@@ -62,6 +62,7 @@ impl ControllerGains {
     }
 
     /// Whether these are the gains of a PID: feedback of the error alone.
+    #[must_use]
     pub fn is_pid(&self) -> bool {
         self.k.len() == ERROR_STATES
     }
@@ -119,13 +120,13 @@ fn pid_with(
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LoopGains {
-    /// Observer states in use: 7 [int e, e, e', F1_0, F1_1, F2_0, F2_1], or 3 for a PID.
+    /// Observer states in use: 7 `[int e, e, e', F1_0, F1_1, F2_0, F2_1]`, or 3 for a PID.
     pub states: usize,
     /// K, zero beyond `states`.
     pub k: [f64; LOOP_STATES],
     /// L, a row per state, zero beyond `states`.
     pub l: [[f64; 3]; LOOP_STATES],
-    /// Smoothing model [a, b, c] in 1/s: F_0' = a F_0 + b F_1, F_1' = c (F_0 - F_1).
+    /// Smoothing model `[a, b, c]` in 1/s: `F_0' = a F_0 + b F_1`, `F_1' = c (F_0 - F_1)`.
     pub smoothing: [f64; 3],
     /// Direction B20 in which the sensor fault enters (int x, x, x').
     pub sensor_fault_input: [f64; 3],
@@ -190,6 +191,7 @@ pub fn loop_gains(
 /// and one per observer state; what the step of the integrator must resolve.
 ///
 /// Empty if the gains are not finite.
+#[must_use]
 pub fn poles(gains: &LoopGains) -> Vec<Complex<f64>> {
     let n = gains.states;
     let error = error_channel();

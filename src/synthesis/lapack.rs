@@ -149,7 +149,8 @@ fn leading(ld: i32, rows: usize) -> Option<usize> {
 }
 
 /// The column-major matrix of the given shape (rows, columns) and leading dimension at `data`.
-/// Its rows have stride 1, always: with any other, nalgebra 0.35 walks past the end of a vector.
+/// Its rows have stride 1, always: with any other, nalgebra 0.35 walks past the end of a vector
+/// (dimforge/nalgebra issue 1616).
 ///
 /// # Safety
 /// Each entry must be readable for as long as the view is used, and none written meanwhile.

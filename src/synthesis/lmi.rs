@@ -138,14 +138,14 @@ pub(super) fn minimise(
     let mut column_start = vec![0];
     let mut row = Vec::new();
     let mut value = Vec::new();
-    for k in 0..variables {
+    for (k, scale) in columns.iter().enumerate() {
         let column = blocks
             .iter()
             .flat_map(|block| svec(&block.scaled(&block.coefficients[k])));
         for (i, coefficient) in column.enumerate() {
             if coefficient != 0.0 {
                 row.push(i);
-                value.push(-coefficient * columns[k]);
+                value.push(-coefficient * scale);
             }
         }
         column_start.push(row.len());
@@ -155,8 +155,10 @@ pub(super) fn minimise(
         .flat_map(|block| svec(&block.scaled(&block.constant)))
         .collect();
     let constraints = CscMatrix::new(right.len(), variables, column_start, row, value);
-    let linear: Vec<f64> = (0..variables)
-        .map(|k| (cost(&unit(k)) - cost(&zero)) * columns[k])
+    let linear: Vec<f64> = columns
+        .iter()
+        .enumerate()
+        .map(|(k, scale)| (cost(&unit(k)) - cost(&zero)) * scale)
         .collect();
     let cones: Vec<_> = blocks
         .iter()
@@ -193,7 +195,7 @@ pub(super) fn minimise(
     })
 }
 
-/// An inequality F_0 + sum of x_k F_k >= 0, seen as diag(rows) F diag(rows) >= 0.
+/// An inequality `F_0 + sum of x_k F_k >= 0`, seen as `diag(rows) F diag(rows) >= 0`.
 struct Block {
     constant: DMatrix<f64>,
     coefficients: Vec<DMatrix<f64>>,

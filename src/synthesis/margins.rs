@@ -142,10 +142,11 @@ pub(super) fn peak(grid: &[f64], value: impl Fn(f64) -> Option<f64>) -> Option<(
             low = left;
         }
     }
-    let refined = ((low + high) / 2.0).exp();
+    let refined = low.midpoint(high).exp();
     let at_refined = value(refined)?;
-    match at_refined > samples[best] {
-        true => Some((refined, at_refined)),
-        false => Some((grid[best], samples[best])),
-    }
+    Some(if at_refined > samples[best] {
+        (refined, at_refined)
+    } else {
+        (grid[best], samples[best])
+    })
 }

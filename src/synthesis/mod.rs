@@ -163,7 +163,7 @@ fn agreement(
 ) -> Result<Check, SynthesisError> {
     require(
         step,
-        format!("difference of the {step} to its Riccati solution, relative"),
+        "largest difference to the Riccati gain, relative to the largest entry".into(),
         max_abs(&(lmi - riccati)) / max_abs(riccati),
         AGREEMENT_LIMIT,
         "the solver did not reach the optimum; use weights with less extreme ratios",

@@ -33,6 +33,7 @@ impl Preset {
     pub const ALL: [Self; 3] = [Self::UavPaper, Self::UavPhysical, Self::BipedPaper];
 
     /// The name in campaign files.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::UavPaper => "uav-paper",
@@ -42,6 +43,7 @@ impl Preset {
     }
 
     /// The designs by role, in the order of an agent's channels.
+    #[must_use]
     pub fn designs(self) -> Vec<(ChannelRole, ChannelDesign)> {
         match self {
             Self::UavPaper => vec![

@@ -41,6 +41,7 @@ pub enum SmoothingRule {
 
 impl Smoothing {
     /// The model's default: order 1, leak 1 1/s, taps 0.1 s apart, windows 3 and 4.
+    #[must_use]
     pub fn paper() -> Self {
         Self {
             spacing_s: 0.1,
@@ -53,11 +54,13 @@ impl Smoothing {
     }
 
     /// Number of taps of the two models, w1 + 1 and w2 + 1.
+    #[must_use]
     pub fn taps(&self) -> [usize; 2] {
         self.windows.map(|window| window + 1)
     }
 
     /// The weights of the first row, without padding.
+    #[must_use]
     pub fn weights(&self) -> Vec<f64> {
         match &self.rule {
             SmoothingRule::Leaky { order, leak_per_s } => {
@@ -68,6 +71,7 @@ impl Smoothing {
     }
 
     /// Number of leading taps that feed back into the signal; later taps are a pure delay line.
+    #[must_use]
     pub fn active_taps(&self) -> usize {
         let last = self.weights().iter().rposition(|&weight| weight != 0.0);
         last.map_or(1, |index| index + 1)
@@ -114,7 +118,7 @@ impl Smoothing {
     }
 }
 
-/// The coefficients a_0 .. a_p of 1 - (1 - g z^-1)^(p+1) = sum of a_k z^-(k+1).
+/// The coefficients `a_0 .. a_p` of `1 - (1 - g z^-1)^(p+1)`, the sum of `a_k z^-(k+1)`.
 fn leaky_weights(order: usize, g: f64) -> Vec<f64> {
     // Multiply (1 - g z^-1) out, order + 1 times.
     let mut polynomial = vec![1.0];
@@ -133,6 +137,7 @@ fn leaky_weights(order: usize, g: f64) -> Vec<f64> {
 }
 
 #[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
 mod tests {
     use super::*;
 

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Check {
+    /// Which step of the synthesis it belongs to.
+    pub step: Step,
     /// What was measured.
     pub name: String,
     /// What was found.
@@ -107,9 +109,10 @@ fn analyse(
 ) -> Result<(LoopAnalysis, Vec<Check>), SynthesisError> {
     let pid = gains.is_pid();
     gains.require_states(if pid { ERROR_STATES } else { design.states() })?;
-    let channel = match pid {
-        true => error_channel(),
-        false => augmented_channel(design),
+    let channel = if pid {
+        error_channel()
+    } else {
+        augmented_channel(design)
     };
     let unsolved = |step| SynthesisError::NotConverged {
         step,
@@ -203,6 +206,7 @@ pub(super) fn require(
 ) -> Result<Check, SynthesisError> {
     if value < limit {
         return Ok(Check {
+            step,
             name,
             value,
             limit,

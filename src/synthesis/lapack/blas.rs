@@ -1,4 +1,6 @@
 //! Products of matrices and vectors (BLAS levels 2 and 3).
+//!
+//! Each unsafe routine asks of its caller what the symbols exported from it ask.
 
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector, RealField};
 

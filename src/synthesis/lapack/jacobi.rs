@@ -6,7 +6,8 @@
 
 use nalgebra::DMatrix;
 
-/// Sweeps over all column pairs before giving up. Convergence is quadratic: ten are already rare.
+/// Sweeps over all column pairs before giving up. Convergence is quadratic in the end, so that a
+/// handful does.
 const MAX_SWEEPS: usize = 60;
 
 /// `A = U diag(values) V'`, with k = min(rows, columns) singular values in descending order.
@@ -32,25 +33,14 @@ pub(super) fn svd(a: DMatrix<f64>) -> Option<Svd> {
 /// Extends `n x k` orthonormal columns to a basis of `size` columns: each time the axis that
 /// lies farthest from their span, made orthogonal to it (twice, as once loses digits).
 pub(super) fn complete_basis(columns: DMatrix<f64>, size: usize) -> DMatrix<f64> {
-    let (n, k) = columns.shape();
+    let k = columns.ncols();
     let mut basis = columns.resize_horizontally(size, 0.0);
     for j in k..size {
         let (known, mut rest) = basis.columns_range_pair_mut(..j, j..);
-        let axis = known
-            .row_iter()
-            .map(|row| row.norm_squared())
-            .enumerate()
-            .fold((0, 1.0), |least, (i, covered)| {
-                if covered < least.1 {
-                    (i, covered)
-                } else {
-                    least
-                }
-            })
-            .0;
         let mut column = rest.column_mut(0);
         column.fill(0.0);
-        if axis < n {
+        let covered = known.row_iter().map(|row| row.norm_squared()).enumerate();
+        if let Some((axis, _)) = covered.min_by(|(_, a), (_, b)| a.total_cmp(b)) {
             column[axis] = 1.0;
         }
         for _ in 0..2 {

@@ -1,4 +1,6 @@
 //! Linear systems: Cholesky factor and solution, LU solution.
+//!
+//! Each unsafe routine asks of its caller what the symbols exported from it ask.
 
 use nalgebra::{DMatrix, DMatrixViewMut, RealField};
 

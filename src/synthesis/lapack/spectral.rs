@@ -1,4 +1,6 @@
 //! Eigenvalues of symmetric matrices, singular values of any.
+//!
+//! Each unsafe routine asks of its caller what the symbols exported from it ask.
 
 use nalgebra::{DMatrix, RealField, SymmetricEigen};
 

@@ -117,28 +117,35 @@ fn val_syevr_matches_nalgebra() {
     }
 }
 
+/// Entries that shrink from the first to the last row and column, by 2^`exponent` in all.
+fn graded(matrix: &DMatrix<f64>, exponent: f64) -> DMatrix<Real> {
+    let n_steps = (matrix.nrows() + matrix.ncols() - 2) as f64;
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        nalgebra::convert(matrix[(i, j)] * (exponent * (i + j) as f64 / n_steps).exp2())
+    })
+}
+
 #[test]
-fn syevr_keeps_strongly_graded_matrices_finite() {
-    // Squares of the small entries underflow.
-    let depth = Real::MIN_EXP * 9 / 10;
-    let graded = DMatrix::from_fn(8, 8, |i, j| {
-        let exponent = f64::from(depth) * (i + j) as f64 / 14.0;
-        nalgebra::convert(exponent.exp2() * (1.0 + ((3 * i * j + i + j) as f64).sin().abs()))
-    });
-    let wanted = Wanted {
-        jobz: b'V',
-        range: b'A',
-        uplo: b'U',
-        values: (0.0, 0.0),
-        positions: (0, 0),
-    };
-    let (values, vectors, info) = eigen(wanted, &graded, 0.0);
-    assert_eq!(info, 0);
-    let z = vectors.matrix();
-    let rebuilt =
-        &z * DMatrix::from_fn(8, 8, |i, j| if i == j { values[i] } else { 0.0 }) * z.transpose();
-    assert_close(&rebuilt, &all_double(&graded), TOLERANCE);
-    assert_close(&z.tr_mul(&z), &DMatrix::identity(8, 8), TOLERANCE);
+fn syevr_decomposes_graded_matrices_whose_squares_underflow() {
+    for seed in 0..200 {
+        let n = 28;
+        // Down to the square root of the smallest number and beyond.
+        let exponent = f64::from(Real::MIN_EXP) * (0.4 + 0.5 * seed as f64 / 200.0);
+        let matrix = graded(&random_symmetric(n, seed), exponent);
+        let wanted = Wanted {
+            jobz: b'V',
+            range: b'A',
+            uplo: b'U',
+            values: (0.0, 0.0),
+            positions: (0, 0),
+        };
+        let (values, vectors, info) = eigen(wanted, &matrix, 0.0);
+        assert_eq!(info, 0);
+        let z = vectors.matrix();
+        let scaled = DMatrix::from_fn(n, n, |i, j| z[(i, j)] * values[j]);
+        assert_close(&(scaled * z.transpose()), &all_double(&matrix), TOLERANCE);
+        assert_close(&z.tr_mul(&z), &DMatrix::identity(n, n), TOLERANCE);
+    }
 }
 
 /// The outcome of gesdd or gesvd; absent vectors have no columns.
@@ -288,13 +295,10 @@ fn gesdd_decomposes_matrices_without_full_rank() {
 #[test]
 fn gesdd_decomposes_graded_and_repeated_singular_values() {
     for seed in 0..20 {
-        let rows = random::<f64>(10, 10, seed);
-        let graded = DMatrix::from_fn(10, 10, |i, j| {
-            let exponent = f64::from(Real::MIN_EXP) * (i + j) as f64 / 20.0;
-            nalgebra::convert(rows[(i, j)] * exponent.exp2())
-        });
+        let matrix = random::<f64>(10, 10, seed);
+        let graded = graded(&matrix, f64::from(Real::MIN_EXP));
         assert_decomposes(&decompose(b"A", &graded, 0.0), &graded);
-        let rotation = rows.qr().q().map(nalgebra::convert);
+        let rotation = matrix.qr().q().map(nalgebra::convert);
         assert_decomposes(&decompose(b"A", &rotation, 0.0), &rotation);
     }
 }

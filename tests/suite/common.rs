@@ -1,0 +1,33 @@
+//! What several test modules need.
+
+use std::path::{Path, PathBuf};
+use urts_mc::campaign::Campaign;
+
+/// A file of this repository.
+pub fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A shipped campaign.
+pub fn campaign(name: &str) -> Campaign {
+    Campaign::load(&repository(&format!("campaigns/{name}.toml"))).unwrap()
+}
+
+/// A shipped campaign with parts of its text replaced; each part must be there.
+pub fn altered(name: &str, changes: &[(&str, &str)]) -> Campaign {
+    let path = repository(&format!("campaigns/{name}.toml"));
+    let mut text = std::fs::read_to_string(&path).unwrap();
+    for (old, new) in changes {
+        assert!(text.contains(old), "{name}.toml does not contain {old:?}");
+        text = text.replace(old, new);
+    }
+    Campaign::parse(&text, &path).unwrap()
+}
+
+/// A golden file.
+pub fn golden(name: &str) -> serde_json::Value {
+    serde_json::from_str(
+        &std::fs::read_to_string(repository(&format!("tests/golden/{name}"))).unwrap(),
+    )
+    .unwrap()
+}

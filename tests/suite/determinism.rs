@@ -1,0 +1,233 @@
+//! The same file, seed and precision give the same bytes, whatever the threads, the width, the order and the length; and one
+//! episode alone gives its row again.
+
+use crate::common::{altered, campaign};
+use std::fs;
+use urts_mc::backend::cpu::{Cpu, Flown, Precision, Simd};
+use urts_mc::campaign::Campaign;
+use urts_mc::gains::GainSet;
+use urts_mc::manifest::campaign_hash;
+use urts_mc::output::OutputDir;
+use urts_mc::replay::replay;
+use urts_mc::run::{Settings, run};
+
+/// The campaign with noise and every other kind of signal added, short, and with a number of episodes that fills no block.
+fn everything() -> Campaign {
+    let noise = "[verdict]";
+    let more = r#"[[disturbance]]
+kind = "constant"
+amplitude = { normal = { mean = 0.0, std = 5.0 } }
+
+[[fault]]
+target = "sensor"
+kind = "noise"
+onset_s = 1.0
+std = { uniform = [0.001, 0.01] }
+
+[[fault]]
+target = "sensor"
+kind = "bias"
+probability = 0.5
+onset_s = { uniform = [0.5, 2.0] }
+magnitude = { normal = { mean = 0.0, std = 0.1 } }
+
+[[fault]]
+target = "actuator"
+kind = "bias"
+channels = [1, 5]
+onset_s = { uniform = [0.5, 2.0] }
+magnitude = 3.0
+
+[verdict]"#;
+    altered(
+        "smoke",
+        &[
+            (noise, more),
+            ("duration_s = 6.0", "duration_s = 4.5"),
+            ("episodes = 32", "episodes = 37"),
+        ],
+    )
+}
+
+fn fly(
+    campaign: &Campaign,
+    simd: Option<Simd>,
+    threads: usize,
+    precision: Precision,
+) -> Vec<Flown> {
+    let gains = GainSet::obtain(campaign).unwrap();
+    let cpu = Cpu::new(campaign, &gains.loops(), precision, simd);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| cpu.fly(0..campaign.episodes, &|_| ()))
+}
+
+fn files(
+    campaign: &Campaign,
+    threads: usize,
+    simd: Option<Simd>,
+    precision: Precision,
+) -> Vec<(String, Vec<u8>)> {
+    let dir = tempfile::tempdir().unwrap();
+    let out = OutputDir::claim(&dir.path().join("run"), &campaign_hash(campaign), false).unwrap();
+    run(
+        campaign,
+        Settings {
+            precision,
+            simd,
+            threads,
+        },
+        &out,
+        true,
+        &|_| (),
+    )
+    .unwrap();
+    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(out.path())
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .map(|entry| {
+            (
+                entry.file_name().into_string().unwrap(),
+                fs::read(entry.path()).unwrap(),
+            )
+        })
+        .filter(|(name, _)| name != "manifest.json")
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn the_tables_have_the_same_bytes_for_any_thread_count_and_simd_width() {
+    let campaign = everything();
+    let reference = files(&campaign, 1, Some(Simd::Avx2), Precision::F32);
+    let names: Vec<&str> = reference.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "channels.csv",
+            "channels.parquet",
+            "comparison.csv",
+            "comparison.parquet",
+            "episodes.csv",
+            "episodes.parquet",
+            "gains.json",
+            "summary.csv",
+            "summary.parquet"
+        ]
+    );
+    for (threads, simd) in [(2, Simd::Avx2), (1, Simd::Avx512), (2, Simd::Avx512)] {
+        if simd.is_available() {
+            assert!(
+                files(&campaign, threads, Some(simd), Precision::F32) == reference,
+                "{threads} threads, {simd:?}"
+            );
+        }
+    }
+    // The comparison can fail: another seed must show in both big tables.
+    let mut other = campaign.clone();
+    other.seed += 1;
+    let changed = files(&other, 1, Some(Simd::Avx2), Precision::F32);
+    for (name, content) in reference {
+        let same = changed
+            .iter()
+            .any(|(own, bytes)| *own == name && *bytes == content);
+        assert_eq!(same, name == "gains.json", "{name}");
+    }
+}
+
+#[test]
+fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
+    let long = everything();
+    let mut short = long.clone();
+    short.episodes = 10;
+    let all = fly(&long, None, 2, Precision::F32);
+    assert_eq!(all.len(), 37);
+    assert!(all[..10] == fly(&short, None, 2, Precision::F32));
+    assert!(all[0].outcomes != all[1].outcomes, "episodes differ");
+}
+
+#[test]
+fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
+    let campaign = everything();
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
+    let all = cpu.fly(0..37, &|_| ());
+    assert!(cpu.fly(5..23, &|_| ()) == all[5..23]);
+}
+
+#[test]
+fn all_controllers_of_an_episode_meet_the_same_draws() {
+    let campaign = everything();
+    let mut reversed = campaign.clone();
+    reversed.controllers.reverse();
+    let (forward, backward) = (
+        fly(&campaign, None, 1, Precision::F32),
+        fly(&reversed, None, 1, Precision::F32),
+    );
+    for (a, b) in forward.iter().zip(&backward) {
+        assert!(a.episode == b.episode);
+        let mut outcomes = b.outcomes.clone();
+        outcomes.reverse();
+        assert!(a.outcomes == outcomes);
+    }
+}
+
+#[test]
+fn a_replayed_episode_has_the_metrics_of_its_row() {
+    for precision in [Precision::F32, Precision::F64] {
+        let campaign = everything();
+        let dir = tempfile::tempdir().unwrap();
+        let out =
+            OutputDir::claim(&dir.path().join("run"), &campaign_hash(&campaign), false).unwrap();
+        run(
+            &campaign,
+            Settings {
+                precision,
+                simd: None,
+                threads: 2,
+            },
+            &out,
+            false,
+            &|_| (),
+        )
+        .unwrap();
+        let flown = fly(&campaign, None, 1, precision);
+        for (episode, controller) in [(0, "ftc"), (21, "pid"), (36, "pid-tuned")] {
+            let replayed = replay(out.path(), episode, controller, 0.01).unwrap();
+            let index = campaign
+                .controllers
+                .iter()
+                .position(|name| name == controller)
+                .unwrap();
+            assert!(
+                replayed.outcomes == flown[episode as usize].outcomes[index],
+                "{precision:?} {episode} {controller}"
+            );
+            assert_eq!(replayed.snapshots.len(), 451);
+            // The trajectory is the one that the metrics are of.
+            let settle = (campaign.time.settle_step / 5) as usize;
+            let largest = replayed.snapshots[settle..450]
+                .iter()
+                .map(|s| s.agents[1][3].e.abs())
+                .fold(0.0, f64::max);
+            let recorded = replayed.outcomes[1].channels[3].max_abs;
+            assert!(
+                largest <= recorded && largest > 0.99 * recorded,
+                "{largest} of {recorded}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_result_of_the_smoke_campaign_does_not_depend_on_how_often_it_is_flown() {
+    let campaign = campaign("smoke");
+    let settings = (2, None, Precision::F64);
+    assert!(
+        files(&campaign, settings.0, settings.1, settings.2)
+            == files(&campaign, settings.0, settings.1, settings.2)
+    );
+}

@@ -1,0 +1,25 @@
+//! All integration tests, in one binary: each links the whole program.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `scenarios` | the closed loop against independent trajectories |
+//! | `synthesis` | gains, certificates and margins against an independent implementation |
+//! | `lapack` | the linear algebra under the solver against nalgebra |
+//! | `statistics` | estimators against published values, and their coverage |
+//! | `path` | the waypoint reference |
+//! | `determinism` | the same bytes for any thread count, width and length; replay |
+//! | `model` | lanes, random numbers, order of the integration, limits |
+//! | `campaigns` | every shipped campaign; what the paper claims |
+//! | `cli` | commands, exit codes and error messages |
+//!
+//! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with ourselves.
+#![expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
+
+mod common;
+
+mod determinism;
+mod lapack;
+mod path;
+mod scenarios;
+mod statistics;
+mod synthesis;
