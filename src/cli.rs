@@ -3,6 +3,7 @@
 use crate::show;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
@@ -15,11 +16,12 @@ use urts_mc::manifest::campaign_hash;
 use urts_mc::output::{OutputDir, OutputError};
 use urts_mc::replay::{ReplayError, replay};
 use urts_mc::run::{RunError, Settings, run};
+use urts_mc::synthesis::{Preset, synthesize};
 
 /// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXIT_CODES)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
@@ -46,10 +48,10 @@ struct Overrides {
     /// The campaign file
     campaign: PathBuf,
     /// Fly this many episodes instead of the campaign's
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     episodes: Option<u32>,
     /// Use this seed instead of the campaign's
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
 }
 
@@ -64,12 +66,12 @@ struct RunArguments {
     #[arg(long, value_enum, default_value = "auto")]
     simd: SimdChoice,
     /// Threads; 0 takes all cores. The result does not depend on it
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
+    threads: u16,
     /// Output directory [default: reports/<name of the campaign>]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Replace whatever the output directory holds
+    /// Write even where the output directory holds another campaign's run or other files
     #[arg(long)]
     overwrite: bool,
     /// Write the episode and channel tables as CSV too
@@ -92,7 +94,11 @@ struct CheckArguments {
 #[derive(Debug, Args)]
 struct SynthesizeArguments {
     /// The campaign file
-    campaign: PathBuf,
+    #[arg(required_unless_present = "preset")]
+    campaign: Option<PathBuf>,
+    /// Synthesize a preset instead of a campaign's gains
+    #[arg(long, conflicts_with = "campaign", value_parser = ["uav-paper", "uav-physical", "biped-paper"])]
+    preset: Option<String>,
     /// Print as JSON, in the format of gains.json
     #[arg(long)]
     json: bool,
@@ -103,17 +109,20 @@ struct ReplayArguments {
     /// Output directory of the run
     run: PathBuf,
     /// Index of the episode, from 0
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     episode: u32,
     /// The controller
     #[arg(long, default_value = "ftc")]
     controller: String,
     /// Seconds between samples
-    #[arg(long, default_value_t = 0.01)]
+    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     interval: f64,
     /// The Parquet file to write [default: <run>/replay-<episode>-<controller>.parquet]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Replace the file that --out names
+    #[arg(long)]
+    overwrite: bool,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -132,7 +141,7 @@ enum SimdChoice {
 
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Code {
+pub(crate) enum Code {
     Done = 0,
     Other = 1,
     Usage = 2,
@@ -148,19 +157,45 @@ impl From<Code> for process::ExitCode {
 
 /// An error and the exit code that it means.
 #[derive(Debug)]
-pub struct Failure {
+pub(crate) struct Failure {
     /// What went wrong.
-    pub error: anyhow::Error,
+    pub(crate) error: anyhow::Error,
     /// How the program ends.
-    pub code: Code,
+    pub(crate) code: Code,
 }
 
 impl<E: Into<anyhow::Error>> From<E> for Failure {
     fn from(error: E) -> Self {
         let error = error.into();
-        let code = code_of(&error);
-        Self { error, code }
+        Self {
+            code: code_of(&error),
+            error: anyhow::Error::msg(said_once(&error)),
+        }
     }
+}
+
+impl Failure {
+    fn usage(message: String) -> Self {
+        Self {
+            error: anyhow::Error::msg(message),
+            code: Code::Usage,
+        }
+    }
+}
+
+/// An error and its causes, each once: some errors quote their cause, others leave it to whoever reports them.
+fn said_once(error: &anyhow::Error) -> String {
+    error
+        .chain()
+        .map(ToString::to_string)
+        .reduce(|said, cause| {
+            if said.contains(&cause) {
+                said
+            } else {
+                format!("{said}: {cause}")
+            }
+        })
+        .unwrap_or_default()
 }
 
 fn code_of(error: &anyhow::Error) -> Code {
@@ -204,17 +239,14 @@ fn code_of(error: &anyhow::Error) -> Code {
 ///
 /// # Errors
 /// Whatever stops it, with the exit code that it means.
-pub fn execute(arguments: Arguments) -> Result<Code, Failure> {
+pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
     match arguments.command {
         Command::Run(arguments) => run_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
         Command::Schema => {
-            print(&format!(
-                "{}\n",
-                serde_json::to_string_pretty(&Campaign::schema())?
-            ))?;
+            print_json(&Campaign::schema())?;
             Ok(Code::Done)
         }
     }
@@ -238,11 +270,10 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
         SimdChoice::Avx512 => Some(Simd::Avx512),
     };
     if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
-        let error = anyhow::anyhow!("--simd {simd:?}: this processor lacks it; use auto");
-        return Err(Failure {
-            error,
-            code: Code::Usage,
-        });
+        let name = format!("{simd:?}").to_lowercase();
+        return Err(Failure::usage(format!(
+            "--simd {name}: this processor lacks it; use auto"
+        )));
     }
     let precision = match arguments.precision {
         PrecisionChoice::F32 => Precision::F32,
@@ -251,7 +282,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     let settings = Settings {
         precision,
         simd,
-        threads: arguments.threads,
+        threads: usize::from(arguments.threads),
     };
     let path = arguments
         .out
@@ -266,18 +297,18 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     progress.finish_and_clear();
     let findings = findings?;
     if arguments.json {
-        print(&format!(
-            "{}\n",
-            serde_json::to_string_pretty(&show::findings_json(&findings))?
-        ))?;
+        print_json(&show::findings_json(&findings))?;
     } else {
         print(&show::findings(&campaign, &findings, &path))?;
     }
-    Ok(if findings.unmet.is_empty() {
-        Code::Done
+    if findings.unmet.is_empty() {
+        Ok(Code::Done)
     } else {
-        Code::Unmet
-    })
+        Err(Failure {
+            error: anyhow::Error::msg(show::unmet(&campaign, &findings)),
+            code: Code::Unmet,
+        })
+    }
 }
 
 /// A bar with rate and time left, on a terminal only.
@@ -301,10 +332,7 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     let campaign = arguments.overrides.load()?;
     let gains = GainSet::obtain(&campaign)?;
     if arguments.json {
-        print(&format!(
-            "{}\n",
-            serde_json::to_string_pretty(&show::plan_json(&campaign))?
-        ))?;
+        print_json(&show::plan_json(&campaign))?;
     } else {
         print(&show::plan(&campaign, &gains))?;
     }
@@ -312,15 +340,37 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
 }
 
 fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
-    let campaign = Campaign::load(&arguments.campaign)?;
+    let Some(path) = &arguments.campaign else {
+        return synthesize_preset(arguments);
+    };
+    let campaign = Campaign::load(path)?;
     let gains = GainSet::obtain(&campaign)?;
     if arguments.json {
-        print(&format!(
-            "{}\n",
-            serde_json::to_string_pretty(&gains.to_file(&campaign.synthesis.designs))?
-        ))?;
+        print_json(&gains.to_file(&campaign.synthesis.designs))?;
     } else {
         print(&show::gains(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
+    let preset = Preset::ALL
+        .into_iter()
+        .find(|known| Some(known.name()) == arguments.preset.as_deref());
+    let mut done = Vec::new();
+    for (role, design) in preset.map(Preset::designs).unwrap_or_default() {
+        let synthesis = synthesize(&design).map_err(|error| Failure {
+            error: error.into(),
+            code: Code::Synthesis,
+        })?;
+        done.push((format!("{role:?}").to_lowercase(), synthesis));
+    }
+    if arguments.json {
+        print_json(&done.into_iter().collect::<BTreeMap<_, _>>())?;
+    } else {
+        for (role, synthesis) in &done {
+            print(&show::synthesis(role, synthesis))?;
+        }
     }
     Ok(Code::Done)
 }
@@ -332,7 +382,14 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
         controller,
         interval,
         out,
+        overwrite,
     } = arguments;
+    if let Some(out) = out.as_ref().filter(|out| out.exists() && !overwrite) {
+        return Err(Failure::usage(format!(
+            "--out {}: exists already; give another file, or replace it with --overwrite",
+            out.display()
+        )));
+    }
     let replayed = replay(run, *episode, controller, *interval)?;
     let path = out
         .clone()
@@ -352,6 +409,10 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
     OutputDir::existing(dir).write_parquet(&name, &replayed.table())?;
     print(&show::replay(&replayed, *episode, controller, &path))?;
     Ok(Code::Done)
+}
+
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&format!("{}\n", serde_json::to_string_pretty(value)?))
 }
 
 /// Prints to standard output; a reader that went away is not an error.

@@ -422,16 +422,8 @@ fn ratio(
                     let pairs = layout
                         .of(&scores.rmse[a], episode)
                         .zip(layout.of(&scores.rmse[b], episode));
-                    // Two errors of exactly zero are a tie.
                     let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
-                        (
-                            sum + if of_a == of_b {
-                                0.0
-                            } else {
-                                (of_b / of_a).ln()
-                            },
-                            count + 1.0,
-                        )
+                        (sum + log_ratio_of(of_a, of_b), count + 1.0)
                     });
                     sum / count
                 }
@@ -450,5 +442,18 @@ fn ratio(
         log_ratio: median_bca(&log_ratios, LEVEL),
         win_rate: win_rate(wins, losses, ties, LEVEL),
         diverged,
+    }
+}
+
+/// ln(b / a).
+#[expect(
+    clippy::float_cmp,
+    reason = "two errors of exactly zero are a tie, and so are equal ones"
+)]
+fn log_ratio_of(of_a: f64, of_b: f64) -> f64 {
+    if of_a == of_b {
+        0.0
+    } else {
+        (of_b / of_a).ln()
     }
 }

@@ -27,7 +27,7 @@ pub enum GainsError {
         /// The channels.
         role: &'static str,
         /// Why.
-        source: SynthesisError,
+        source: Box<SynthesisError>,
     },
     /// Gains from a file do not pass the verification.
     #[error("{}: controllers.{controller}.{role}: {source}", path.display())]
@@ -39,7 +39,7 @@ pub enum GainsError {
         /// The channels.
         role: &'static str,
         /// Why.
-        source: SynthesisError,
+        source: Box<SynthesisError>,
     },
     /// A gains file cannot be read or lacks what is needed.
     #[error("{}: {reason}", path.display())]
@@ -293,7 +293,7 @@ fn synthesize_both(campaign: &Campaign) -> Result<[ChannelSynthesis; 2], GainsEr
         synthesize(&campaign.synthesis.designs[role]).map_err(|source| GainsError::Synthesis {
             path: campaign.path.clone(),
             role: ROLES[role],
-            source,
+            source: Box::new(source),
         })
     };
     let position = one(0)?;
@@ -306,40 +306,47 @@ fn synthesize_both(campaign: &Campaign) -> Result<[ChannelSynthesis; 2], GainsEr
     Ok([position, attitude])
 }
 
+/// The gains of a built-in controller in a synthesis, and what was found about them.
+#[must_use]
+pub fn built_in<'a>(
+    synthesis: &'a ChannelSynthesis,
+    name: &str,
+) -> (&'a ControllerGains, Findings) {
+    let analysis = &synthesis.analysis;
+    let bare = |analysis: &LoopAnalysis| Findings {
+        analysis: analysis.clone(),
+        certificate: None,
+        checks: Vec::new(),
+        solver: Vec::new(),
+    };
+    match name {
+        PID => (&synthesis.pid, bare(&analysis.pid)),
+        PID_TUNED => (&synthesis.pid_tuned, bare(&analysis.pid_tuned)),
+        _ => {
+            let findings = Findings {
+                analysis: analysis.ftc.clone(),
+                certificate: Some(synthesis.certificate.clone()),
+                checks: synthesis.checks.clone(),
+                solver: synthesis.solver.clone(),
+            };
+            (&synthesis.ftc, findings)
+        }
+    }
+}
+
 fn from_synthesis(
     campaign: &Campaign,
     name: &str,
     synthesized: &[ChannelSynthesis; 2],
 ) -> Result<FlyingController, GainsError> {
     let channel = |role: usize| {
-        let of = &synthesized[role];
-        let bare = |analysis: &LoopAnalysis| Findings {
-            analysis: analysis.clone(),
-            certificate: None,
-            checks: Vec::new(),
-            solver: Vec::new(),
-        };
-        let (gains, findings) = match name {
-            PID => (&of.pid, bare(&of.analysis.pid)),
-            PID_TUNED => (&of.pid_tuned, bare(&of.analysis.pid_tuned)),
-            _ => {
-                let certificate = Some(of.certificate.clone());
-                let (checks, solver) = (of.checks.clone(), of.solver.clone());
-                (
-                    &of.ftc,
-                    Findings {
-                        analysis: of.analysis.ftc.clone(),
-                        certificate,
-                        checks,
-                        solver,
-                    },
-                )
+        let (gains, findings) = built_in(&synthesized[role], name);
+        let loop_gains = integrable(&synthesized[role].design, gains).map_err(|source| {
+            GainsError::Synthesis {
+                path: campaign.path.clone(),
+                role: ROLES[role],
+                source: Box::new(source),
             }
-        };
-        let loop_gains = integrable(&of.design, gains).map_err(|source| GainsError::Synthesis {
-            path: campaign.path.clone(),
-            role: ROLES[role],
-            source,
         })?;
         Ok::<_, GainsError>(ChannelController {
             gains: gains.clone(),
@@ -387,7 +394,7 @@ fn from_file(
             path: path.to_path_buf(),
             controller: controller.to_string(),
             role: ROLES[role],
-            source,
+            source: Box::new(source),
         };
         let loop_gains = integrable(&designs[role], gains).map_err(refused)?;
         let verified = if check {

@@ -4,7 +4,7 @@ use crate::manifest::Manifest;
 use crate::tables::Table;
 use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -73,8 +73,12 @@ impl OutputDir {
             path: path.to_path_buf(),
             what,
         };
+        let unwritable = |source| OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source,
+        };
         if path.exists() && !path.is_dir() {
-            return Err(taken("a file, not a directory".into()));
+            return Err(unwritable(ErrorKind::NotADirectory.into()));
         }
         let occupied =
             path.is_dir() && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
@@ -87,20 +91,21 @@ impl OutputDir {
                         manifest.name
                     )));
                 }
-                Err(_) => return Err(taken("files that are not a run's".into())),
+                Err(_) => return Err(taken("files, but no finished run".into())),
             }
         }
-        let created = !path.exists();
-        let unwritable = |source| OutputError::Unwritable {
-            path: path.to_path_buf(),
-            source,
-        };
-        fs::create_dir_all(path).map_err(unwritable)?;
+        let absent: Vec<&Path> = path
+            .ancestors()
+            .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
+            .collect();
         let probe = path.join(".urts-mc-probe");
-        let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
-        // The directory is made again when the first file is written; a run that fails before leaves none behind.
-        if created {
-            fs::remove_dir(path).map_err(unwritable)?;
+        let tried = fs::create_dir_all(path)
+            .and_then(|()| File::create(&probe))
+            .and_then(|_| fs::remove_file(&probe));
+        // The directories are made again when the first file is written; a run that fails before leaves none behind.
+        for dir in absent {
+            // One that could not be made cannot be removed either.
+            let _ = fs::remove_dir(dir);
         }
         tried.map_err(unwritable)?;
         Ok(Self(path.to_path_buf()))
@@ -183,24 +188,39 @@ impl OutputDir {
             .map(BufWriter::new)
             .and_then(|mut file| fill(&mut file).and_then(|()| file.flush()))
             .and_then(|()| fs::rename(&part, &whole));
-        written.map_err(|source| OutputError::Unwritable {
-            path: whole,
-            source,
+        written.map_err(|source| {
+            // The error that is reported is the first.
+            let _ = fs::remove_file(&part);
+            OutputError::Unwritable {
+                path: whole,
+                source,
+            }
         })
     }
 
-    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled.
+    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled, and
+    /// what the new run may not replace.
     ///
     /// # Errors
-    /// If there is one and it cannot be removed.
+    /// If there is something and it cannot be removed.
     pub fn begin(&self) -> Result<(), OutputError> {
-        let manifest = self.0.join(MANIFEST);
-        if !manifest.exists() {
-            return Ok(());
+        let remove = |path: PathBuf| match fs::remove_file(&path) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                Err(OutputError::Unwritable { path, source })
+            }
+            _ => Ok(()),
+        };
+        remove(self.0.join(MANIFEST))?;
+        let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
+        for entry in entries {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let replay = name.starts_with("replay-") && name.ends_with(".parquet");
+            let half = name.starts_with('.') && name.ends_with(".part");
+            if replay || half || ["episodes.csv", "channels.csv"].contains(&&*name) {
+                remove(entry.path())?;
+            }
         }
-        fs::remove_file(&manifest).map_err(|source| OutputError::Unwritable {
-            path: manifest,
-            source,
-        })
+        Ok(())
     }
 }

@@ -117,7 +117,7 @@ impl Replay {
     pub fn table(&self) -> Table {
         let mut table = Table::default();
         for snapshot in &self.snapshots {
-            for (agent, channels) in snapshot.agents.iter().enumerate() {
+            for (agent, channels) in (0u32..).zip(&snapshot.agents) {
                 for (channel, shown) in UAV_CHANNELS.iter().zip(channels) {
                     let Shown {
                         r,
@@ -136,7 +136,7 @@ impl Replay {
                         || "t_s".into(),
                         f64::from(snapshot.step) * self.campaign.time.step_s,
                     )
-                    .count(|| "agent".into(), agent as u32)
+                    .count(|| "agent".into(), agent)
                     .word(|| "channel".into(), channel);
                     for (name, value) in [
                         ("r", r),

@@ -3,19 +3,20 @@
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
-use urts_mc::campaign::{Campaign, UAV_CHANNELS};
+use urts_mc::campaign::{Campaign, FTC, PID, PID_TUNED, UAV_CHANNELS};
 use urts_mc::comparison::{FailureRate, PairedComparison, Ratio};
 use urts_mc::draw::draw;
-use urts_mc::gains::{FlyingController, GainSet, ROLES};
+use urts_mc::gains::{self, ChannelController, GainSet, ROLES, built_in};
 use urts_mc::replay::Replay;
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
+use urts_mc::synthesis::{ChannelSynthesis, ControllerGains};
 
 /// Episodes that `check` draws to show real ranges.
 const SHOWN_DRAWS: u32 = 200;
 
 /// The findings of a run at a glance.
-pub fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
+pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
     let mut text = String::new();
     let manifest = &findings.manifest;
     let simd = manifest
@@ -129,17 +130,6 @@ pub fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> Str
             &format!("    failures  {}", failures_text(comparison)),
         );
     }
-    for (requirement, rate) in &findings.unmet {
-        line(
-            &mut text,
-            &format!(
-                "\nrequirement not met: {} fails in at most {:.2} % of all cases with 95 % confidence; the limit is {:.2} %",
-                requirement.controller,
-                100.0 * rate.upper_95,
-                100.0 * requirement.failure_rate_upper_95
-            ),
-        );
-    }
     let times = manifest.times;
     line(
         &mut text,
@@ -153,6 +143,36 @@ pub fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> Str
         ),
     );
     text
+}
+
+/// The requirements that do not hold, each with the reason and what to do: one a line.
+pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
+    let unmet = findings.unmet.iter().map(|(requirement, rate)| {
+        let index = campaign
+            .requirements
+            .iter()
+            .position(|own| own == *requirement)
+            .unwrap_or_default();
+        let limit = requirement.failure_rate_upper_95;
+        let remedy = if rate.failed() == 0 && limit > 0.0 {
+            let enough = (0.05_f64.ln() / (-limit).ln_1p()).ceil();
+            format!("fly at least {enough} episodes")
+        } else if rate.rate() < limit {
+            "fly more episodes, or change the controller or the limit".to_string()
+        } else {
+            "change the controller or the limit".to_string()
+        };
+        format!(
+            "{}: require[{index}].failure_rate_upper_95 = {limit}: {:?} failed in {} of {} episodes, so with 95 % \
+             confidence its failure rate is known only to be below {:.4}; {remedy}",
+            campaign.path.display(),
+            requirement.controller,
+            rate.failed(),
+            rate.n,
+            rate.upper_95,
+        )
+    });
+    unmet.collect::<Vec<_>>().join("\n")
 }
 
 fn ratio_text(ratio: &Ratio) -> String {
@@ -219,7 +239,7 @@ fn rates<'a>(findings: &'a Findings<'_>, stratum: &str) -> Vec<&'a FailureRate> 
 }
 
 /// The findings of a run for programs.
-pub fn findings_json(findings: &Findings<'_>) -> Value {
+pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
     let interval = |interval: Interval| json!([finite(interval.lower), finite(interval.upper)]);
     let estimate = |estimate: Option<Estimate>| {
         estimate.map(|estimate| json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval) }))
@@ -259,7 +279,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What a campaign would do.
-pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
+pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     let mut text = String::new();
     let steps = f64::from(campaign.time.steps);
     let work =
@@ -314,7 +334,7 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
         ),
     );
     for (name, low, high, count) in ranges(campaign) {
-        let range = if low == high {
+        let range = if low >= high {
             format!("{low:.6}")
         } else {
             format!("{low:.6} .. {high:.6}")
@@ -328,7 +348,7 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
 }
 
 /// [`plan`] for programs.
-pub fn plan_json(campaign: &Campaign) -> Value {
+pub(crate) fn plan_json(campaign: &Campaign) -> Value {
     json!({
         "name": campaign.name, "episodes": campaign.episodes, "team": campaign.team, "seed": campaign.seed,
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
@@ -402,7 +422,7 @@ fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
 }
 
 /// The gains of a campaign and what is known about them.
-pub fn gains(campaign: &Campaign, gains: &GainSet) -> String {
+pub(crate) fn gains(campaign: &Campaign, gains: &GainSet) -> String {
     let mut text = String::new();
     line(
         &mut text,
@@ -420,19 +440,36 @@ pub fn gains(campaign: &Campaign, gains: &GainSet) -> String {
         );
         if same && controller.channels[0].gains == controller.channels[1].gains {
             line(&mut text, "  position and attitude channels");
-            channel(&mut text, controller, 0);
+            channel(
+                &mut text,
+                &controller.channels[0].gains,
+                controller.channels[0].findings.as_ref(),
+            );
         } else {
             for (role, name) in ROLES.iter().enumerate() {
                 line(&mut text, &format!("  {name} channels"));
-                channel(&mut text, controller, role);
+                let ChannelController {
+                    gains, findings, ..
+                } = &controller.channels[role];
+                channel(&mut text, gains, findings.as_ref());
             }
         }
     }
     text
 }
 
-fn channel(text: &mut String, controller: &FlyingController, role: usize) {
-    let channel = &controller.channels[role];
+/// The gains of a preset's channel type and what is known about them.
+pub(crate) fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
+    let mut text = String::new();
+    for name in [FTC, PID, PID_TUNED] {
+        line(&mut text, &format!("{name}, {role} channels"));
+        let (gains, findings) = built_in(synthesis, name);
+        channel(&mut text, gains, Some(&findings));
+    }
+    text
+}
+
+fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&gains::Findings>) {
     let numbers = |values: &[f64]| {
         values
             .iter()
@@ -440,8 +477,8 @@ fn channel(text: &mut String, controller: &FlyingController, role: usize) {
             .collect::<Vec<_>>()
             .join("  ")
     };
-    line(text, &format!("    K  {}", numbers(&channel.gains.k)));
-    for (row, values) in channel.gains.l.iter().enumerate() {
+    line(text, &format!("    K  {}", numbers(&gains.k)));
+    for (row, values) in gains.l.iter().enumerate() {
         line(
             text,
             &format!(
@@ -451,7 +488,7 @@ fn channel(text: &mut String, controller: &FlyingController, role: usize) {
             ),
         );
     }
-    let Some(findings) = &channel.findings else {
+    let Some(findings) = findings else {
         return;
     };
     let poles = |poles: &[[f64; 2]]| {
@@ -512,15 +549,15 @@ fn channel(text: &mut String, controller: &FlyingController, role: usize) {
         line(
             text,
             &format!(
-                "    check   {sign}  {}: {:.3e}, must be below {:.3e}",
-                check.name, check.value, check.limit
+                "    check   {sign}  {}: {}: {:.3e}, must be below {:.3e}",
+                check.step, check.name, check.value, check.limit
             ),
         );
     }
 }
 
 /// How a replayed episode went.
-pub fn replay(replay: &Replay, episode: u32, controller: &str, path: &Path) -> String {
+pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Path) -> String {
     let mut text = String::new();
     line(
         &mut text,

@@ -183,15 +183,15 @@ impl Tables {
                 .max()
                 .unwrap_or(Status::Ok);
             self.scores.status[controller].push(worst);
-            for (agent, judged) in agents.iter().enumerate() {
+            for ((agent, judged), draw) in (0u32..).zip(&agents).zip(draws) {
                 let key = |row: &mut Row<'_>| {
                     row.count(|| "episode".into(), flown.episode.index)
                         .name(|| "controller".into(), name.clone())
-                        .count(|| "agent".into(), agent as u32);
+                        .count(|| "agent".into(), agent);
                 };
                 let mut row = self.episodes.row();
                 key(&mut row);
-                judged.write_agent(&mut row, campaign, worst, &draws[agent]);
+                judged.write_agent(&mut row, campaign, worst, draw);
                 for (channel, outcome) in judged.outcome.channels.iter().enumerate() {
                     let mut row = self.channels.row();
                     key(&mut row);

@@ -178,7 +178,7 @@ impl<R: Real> Flyer<R> {
         blocks
             .into_par_iter()
             .flat_map_iter(|block| {
-                let count = block.len() as u32;
+                let count = block.end - block.start;
                 let episodes: Vec<Episode> =
                     block.map(|episode| draw(&self.campaign, episode)).collect();
                 let mut flown: Vec<Flown> = episodes
@@ -218,9 +218,10 @@ impl<R: Real> Flyer<R> {
 
 /// Ranges of at most [`MAX_WIDTH`] episodes.
 fn blocks(episodes: Range<u32>) -> Vec<Range<u32>> {
-    let width = MAX_WIDTH as u32;
+    const WIDTH: u32 = 16;
+    const { assert!(WIDTH as usize == MAX_WIDTH) };
     (episodes.start..episodes.end)
         .step_by(MAX_WIDTH)
-        .map(|first| first..first.saturating_add(width).min(episodes.end))
+        .map(|first| first..first.saturating_add(WIDTH).min(episodes.end))
         .collect()
 }

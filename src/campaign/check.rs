@@ -1,7 +1,7 @@
 //! Checks of single values and of the shapes that all tables share.
 
 use super::distribution::Distribution;
-use super::error::CampaignError;
+use super::error::{CampaignError, line_of};
 use super::file::*;
 use super::{Drawn, UAV_CHANNELS};
 use std::fmt::Display;
@@ -79,6 +79,7 @@ parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, perio
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
     pub(super) path: &'a Path,
+    pub(super) text: &'a str,
 }
 
 impl Check<'_> {
@@ -89,9 +90,11 @@ impl Check<'_> {
         limit: &str,
         remedy: &str,
     ) -> CampaignError {
+        let key = key.into();
+        let line = line_of(self.text, &key).map_or(String::new(), |line| format!(" (line {line})"));
         CampaignError::Invalid {
             path: self.path.to_path_buf(),
-            key: key.into(),
+            key: key + &line,
             value: value.to_string(),
             limit: limit.to_string(),
             remedy: remedy.to_string(),
@@ -105,10 +108,12 @@ impl Check<'_> {
         bounds: Bounds,
     ) -> Result<f64, CampaignError> {
         if !value.is_finite() {
-            return Err(self.invalid(key, value, "must be finite", "give a number"));
+            return Err(self.invalid(key, in_toml(value), "must be finite", "give a number"));
         }
         match bounds.broken_by(value, value) {
-            Some(limit) => Err(self.invalid(key, value, limit, "give a value within the limit")),
+            Some(limit) => {
+                Err(self.invalid(key, in_toml(value), limit, "give a value within the limit"))
+            }
             None => Ok(value),
         }
     }
@@ -122,23 +127,24 @@ impl Check<'_> {
         parameters: &'static [Parameter],
         team: usize,
     ) -> Result<Vec<Drawn>, CampaignError> {
-        let has = |name: &str| parameters.iter().any(|parameter| parameter.name == name);
-        let foreign = |present: &dyn Fn(&str) -> bool, names: &'static [&'static str]| {
-            names
-                .iter()
-                .find(|name| present(name) && !has(name))
-                .copied()
-        };
-        let unknown = foreign(&|name| base.parameter(name).is_some(), T::NAMES).or_else(|| {
-            blocks?.iter().find_map(|block| {
-                foreign(&|name| block.parameter(name).is_some(), SignalBlock::NAMES)
-            })
+        let foreign = |name: &str| parameters.iter().all(|parameter| parameter.name != name);
+        let in_base = T::NAMES.iter().copied().find_map(|name| {
+            let value = base.parameter(name).filter(|_| foreign(name))?;
+            Some((format!("{table}.{name}"), value))
         });
-        if let Some(name) = unknown {
+        let in_blocks = || {
+            blocks?.iter().enumerate().find_map(|(agent, block)| {
+                SignalBlock::NAMES.iter().copied().find_map(|name| {
+                    let value = block.parameter(name).filter(|_| foreign(name))?;
+                    Some((format!("{table}.agents[{agent}].{name}"), value))
+                })
+            })
+        };
+        if let Some((key, value)) = in_base.or_else(in_blocks) {
             let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name).collect();
             return Err(self.invalid(
-                format!("{table}.{name}"),
-                "given",
+                key,
+                value,
                 "this kind has no such parameter",
                 &format!("remove it; its parameters are {}", known.join(", ")),
             ));
@@ -211,9 +217,9 @@ impl Check<'_> {
         let (distribution, per) = self.channel_value(key, value, parameter, 0)?;
         if per == Some(Per::Channel) {
             return Err(self.invalid(
-                key,
-                "per = \"channel\"",
-                "it has no channels",
+                format!("{key}.per"),
+                "\"channel\"",
+                "this is a quantity of the agent, not of its channels",
                 "use \"episode\" or \"agent\"",
             ));
         }
@@ -231,24 +237,18 @@ impl Check<'_> {
         parameter: Parameter,
         channel: usize,
     ) -> Result<(Distribution, Option<Per>), CampaignError> {
-        let (distribution, per) = match (value, parameter.default) {
-            (None, Some(default)) => (Distribution::Constant(default), None),
+        let (key, value) = match (value, parameter.default) {
+            (None, Some(default)) => return Ok((Distribution::Constant(default), None)),
             (None, None) => {
                 return Err(self.invalid(key, "absent", "this kind needs it", "add it"));
             }
-            (Some(Value::List(list)), _) => {
-                if list.len() != CHANNELS {
-                    return Err(self.invalid(
-                        key,
-                        format!("a list of {}", list.len()),
-                        &format!("a list has one value for each of the {CHANNELS} channels"),
-                        "complete it, or give one value for all",
-                    ));
-                }
-                self.distribution(key, &list[channel])?
-            }
-            (Some(one), _) => self.distribution(key, one)?,
+            (Some(Value::List(list)), _) => match list.get(channel) {
+                Some(own) if list.len() == CHANNELS => (format!("{key}[{channel}]"), own),
+                _ => return Err(self.wrong_length(key, list.len())),
+            },
+            (Some(one), _) => (key.to_string(), one),
         };
+        let (distribution, per) = self.distribution(&key, value)?;
         let (low, high) = distribution.support();
         match parameter.bounds.broken_by(low, high) {
             Some(limit) => {
@@ -257,7 +257,7 @@ impl Check<'_> {
                 } else {
                     "give values within the limit"
                 };
-                Err(self.invalid(key, &distribution, limit, remedy))
+                Err(self.invalid(key, value, limit, remedy))
             }
             None => Ok((distribution, per)),
         }
@@ -329,21 +329,26 @@ impl Check<'_> {
         let values = match numbers {
             None => [default; CHANNELS],
             Some(Numbers::One(value)) => [*value; CHANNELS],
-            Some(Numbers::List(list)) => {
-                <[f64; CHANNELS]>::try_from(list.as_slice()).map_err(|_| {
-                    self.invalid(
-                        key,
-                        format!("a list of {}", list.len()),
-                        &format!("a list has one value for each of the {CHANNELS} channels"),
-                        "complete it, or give one value for all",
-                    )
-                })?
-            }
+            Some(Numbers::List(list)) => <[f64; CHANNELS]>::try_from(list.as_slice())
+                .map_err(|_| self.wrong_length(key, list.len()))?,
         };
-        for value in values {
-            self.number(key, value, bounds)?;
+        for (channel, value) in values.into_iter().enumerate() {
+            let own = match numbers {
+                Some(Numbers::List(_)) => format!("{key}[{channel}]"),
+                _ => key.to_string(),
+            };
+            self.number(&own, value, bounds)?;
         }
         Ok(values)
+    }
+
+    fn wrong_length(&self, key: &str, length: usize) -> CampaignError {
+        self.invalid(
+            key,
+            format!("a list of {length}"),
+            &format!("a list has one value for each of the {CHANNELS} channels"),
+            "complete it, or give one value for all",
+        )
     }
 
     fn distribution(
@@ -351,145 +356,20 @@ impl Check<'_> {
         key: &str,
         value: &Value,
     ) -> Result<(Distribution, Option<Per>), CampaignError> {
-        let file = match value {
-            Value::Number(number) => {
-                return self
-                    .number(key, *number, Bounds::Any)
-                    .map(|n| (Distribution::Constant(n), None));
-            }
-            Value::Distribution(file) => file,
-            Value::List(_) => {
-                return Err(self.invalid(
-                    key,
-                    "a list of lists",
-                    "lists do not nest",
-                    "flatten it",
-                ));
-            }
-        };
-        let range = |form: &str, [low, high]: [f64; 2]| {
-            if low.is_finite() && high.is_finite() && low <= high {
-                return Ok((low, high));
-            }
-            let value = format!("{{ {form} = [{low}, {high}] }}");
-            Err(self.invalid(
+        match value {
+            Value::Number(number) => self
+                .number(key, *number, Bounds::Any)
+                .map(|number| (Distribution::Constant(number), None)),
+            Value::Distribution(file) => match Distribution::read(file) {
+                Ok(distribution) => Ok((distribution, file.per)),
+                Err([limit, remedy]) => Err(self.invalid(key, file, limit, remedy)),
+            },
+            Value::List(_) => Err(self.invalid(
                 key,
                 value,
-                "a range goes from a low to a high finite number",
-                "swap or correct its ends",
-            ))
-        };
-        let spread = |form: &str, std: f64| {
-            if std.is_finite() && std >= 0.0 {
-                return Ok(std);
-            }
-            let value = format!("{{ {form} = {{ std = {std} }} }}");
-            Err(self.invalid(
-                key,
-                value,
-                "a standard deviation is not negative",
-                "give a finite number from 0",
-            ))
-        };
-        let mut forms = Vec::new();
-        if let Some(ends) = file.uniform {
-            let (low, high) = range("uniform", ends)?;
-            forms.push(Distribution::Uniform { low, high });
-        }
-        if let Some(ends) = file.log_uniform {
-            let (low, high) = range("log_uniform", ends)?;
-            if low <= 0.0 {
-                let value = format!("{{ log_uniform = [{low}, {high}] }}");
-                return Err(self.invalid(
-                    key,
-                    value,
-                    "a logarithm needs positive ends",
-                    "use uniform or a positive range",
-                ));
-            }
-            forms.push(Distribution::LogUniform { low, high });
-        }
-        if let Some(normal) = &file.normal {
-            let mean = self.number(key, normal.mean, Bounds::Any)?;
-            forms.push(Distribution::Normal {
-                mean,
-                std: spread("normal", normal.std)?,
-            });
-        }
-        if let Some(normal) = &file.truncated_normal {
-            let (low, high) = range("truncated_normal", [normal.low, normal.high])?;
-            let mean = self.number(key, normal.mean, Bounds::Any)?;
-            let std = spread("truncated_normal", normal.std)?;
-            // Beyond six deviations the tail holds too few doubles to draw from.
-            if std == 0.0 || low > mean + 6.0 * std || high < mean - 6.0 * std {
-                let value = format!(
-                    "{{ truncated_normal = {{ mean = {mean}, std = {std}, low = {low}, high = {high} }} }}"
-                );
-                let limit = "the interval must meet the six standard deviations around the mean";
-                return Err(self.invalid(key, value, limit, "widen the interval or the deviation"));
-            }
-            forms.push(Distribution::TruncatedNormal {
-                mean,
-                std,
-                low,
-                high,
-            });
-        }
-        if let Some(values) = &file.choice {
-            forms.push(self.choice(key, values, file.weights.as_deref())?);
-        } else if file.weights.is_some() {
-            return Err(self.invalid(
-                key,
-                "weights without choice",
-                "weights belong to a choice",
-                "add `choice`",
-            ));
-        }
-        match <[Distribution; 1]>::try_from(forms) {
-            Ok([distribution]) => Ok((distribution, file.per)),
-            Err(forms) => Err(self.invalid(
-                key,
-                format!("{} forms", forms.len()),
-                "a distribution has exactly one of uniform, log_uniform, normal, truncated_normal, choice",
-                "keep one",
+                "lists do not nest",
+                "give one number or distribution per channel",
             )),
         }
-    }
-
-    fn choice(
-        &self,
-        key: &str,
-        values: &[f64],
-        weights: Option<&[f64]>,
-    ) -> Result<Distribution, CampaignError> {
-        for value in values {
-            self.number(key, *value, Bounds::Any)?;
-        }
-        let weights = weights.map_or_else(|| vec![1.0; values.len()], <[f64]>::to_vec);
-        let sum: f64 = weights.iter().sum();
-        if values.is_empty()
-            || weights.len() != values.len()
-            || !weights.iter().all(|w| *w >= 0.0)
-            || !(sum > 0.0)
-            || !sum.is_finite()
-        {
-            return Err(self.invalid(
-                key,
-                format!("{{ choice = {values:?}, weights = {weights:?} }}"),
-                "a choice has values, and as many weights, none negative and not all zero",
-                "correct the lists",
-            ));
-        }
-        let cumulative = weights
-            .iter()
-            .scan(0.0, |running, weight| {
-                *running += weight / sum;
-                Some(*running)
-            })
-            .collect();
-        Ok(Distribution::Choice {
-            values: values.to_vec(),
-            cumulative,
-        })
     }
 }

@@ -1,10 +1,10 @@
 //! Distributions of a campaign's random quantities, sampled by inversion: one uniform number in, one value out, so that
 //! a quantity's draw has one address whatever its distribution.
 
+use super::file::DistributionFile;
 use serde::Serialize;
 use statrs::function::erf::{erf, erfc_inv};
 use std::f64::consts::SQRT_2;
-use std::fmt;
 
 /// A distribution with parameters that make sense.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -54,6 +54,90 @@ pub enum Distribution {
 }
 
 impl Distribution {
+    /// The distribution that a file describes; what is wrong and what to do if it describes none.
+    pub(super) fn read(file: &DistributionFile) -> Result<Self, [&'static str; 2]> {
+        let range = |[low, high]: [f64; 2]| {
+            if low <= high && (high - low).is_finite() {
+                Ok((low, high))
+            } else {
+                Err([
+                    "a range goes from a low to a high finite number",
+                    "swap or correct its ends",
+                ])
+            }
+        };
+        let mean_and_spread = |mean: f64, std: f64| {
+            if mean.is_finite() && std.is_finite() && std >= 0.0 {
+                Ok((mean, std))
+            } else {
+                Err([
+                    "a mean is finite, a standard deviation is finite and not negative",
+                    "correct them",
+                ])
+            }
+        };
+        if file.weights.is_some() && file.choice.is_none() {
+            return Err(["weights belong to a choice", "add `choice` or remove them"]);
+        }
+        let DistributionFile {
+            uniform,
+            log_uniform,
+            normal,
+            truncated_normal,
+            choice,
+            weights,
+            per: _,
+        } = file;
+        match (uniform, log_uniform, normal, truncated_normal, choice) {
+            (Some(ends), None, None, None, None) => {
+                let (low, high) = range(*ends)?;
+                Ok(Self::Uniform { low, high })
+            }
+            (None, Some(ends), None, None, None) => {
+                let (low, high) = range(*ends)?;
+                if low > 0.0 {
+                    Ok(Self::LogUniform { low, high })
+                } else {
+                    Err([
+                        "a logarithm needs positive ends",
+                        "use uniform or a positive range",
+                    ])
+                }
+            }
+            (None, None, Some(normal), None, None) => {
+                let (mean, std) = mean_and_spread(normal.mean, normal.std)?;
+                Ok(Self::Normal { mean, std })
+            }
+            (None, None, None, Some(normal), None) => {
+                let (low, high) = range([normal.low, normal.high])?;
+                let (mean, std) = mean_and_spread(normal.mean, normal.std)?;
+                // Beyond six deviations the tail holds too few doubles to draw from.
+                if std > 0.0 && low <= mean + 6.0 * std && high >= mean - 6.0 * std {
+                    Ok(Self::TruncatedNormal {
+                        mean,
+                        std,
+                        low,
+                        high,
+                    })
+                } else {
+                    Err([
+                        "the interval must meet the six standard deviations around the mean",
+                        "widen the interval or the deviation",
+                    ])
+                }
+            }
+            (None, None, None, None, Some(values)) => choose(values, weights.as_deref()),
+            (None, None, None, None, None) => Err([
+                "a distribution has one of uniform, log_uniform, normal, truncated_normal, choice",
+                "add one",
+            ]),
+            _ => Err([
+                "a distribution has only one of uniform, log_uniform, normal, truncated_normal, choice",
+                "keep one",
+            ]),
+        }
+    }
+
     /// The value at probability `unit` in (0, 1).
     #[must_use]
     pub fn quantile(&self, unit: f64) -> f64 {
@@ -114,25 +198,33 @@ impl Distribution {
     }
 }
 
-/// The distribution as a campaign file would say it.
-impl fmt::Display for Distribution {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Constant(value) => write!(f, "{value}"),
-            Self::Uniform { low, high } => write!(f, "uniform [{low}, {high}]"),
-            Self::LogUniform { low, high } => write!(f, "log-uniform [{low}, {high}]"),
-            Self::Normal { mean, std } => write!(f, "normal, mean {mean}, std {std}"),
-            Self::TruncatedNormal {
-                mean,
-                std,
-                low,
-                high,
-            } => {
-                write!(f, "normal, mean {mean}, std {std}, within [{low}, {high}]")
-            }
-            Self::Choice { values, .. } => write!(f, "one of {values:?}"),
-        }
+fn choose(values: &[f64], weights: Option<&[f64]>) -> Result<Distribution, [&'static str; 2]> {
+    let weights = weights.map_or_else(|| vec![1.0; values.len()], <[f64]>::to_vec);
+    let sum: f64 = weights.iter().sum();
+    if !values.iter().all(|value| value.is_finite()) {
+        return Err(["the values must be finite", "give numbers"]);
     }
+    if values.is_empty()
+        || weights.len() != values.len()
+        || !weights.iter().all(|weight| *weight >= 0.0)
+        || !(sum > 0.0 && sum.is_finite())
+    {
+        return Err([
+            "a choice has values, and as many weights, none negative and not all zero",
+            "correct the lists",
+        ]);
+    }
+    let cumulative = weights
+        .iter()
+        .scan(0.0, |running, weight| {
+            *running += weight / sum;
+            Some(*running)
+        })
+        .collect();
+    Ok(Distribution::Choice {
+        values: values.to_vec(),
+        cumulative,
+    })
 }
 
 /// Standard normal quantile.

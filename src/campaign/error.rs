@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use toml::de::{DeTable, DeValue};
 
 /// A campaign that cannot be run, and why.
 #[derive(Debug, Error)]
@@ -27,7 +28,7 @@ pub enum CampaignError {
     Invalid {
         /// The file.
         path: PathBuf,
-        /// The key, with the tables around it.
+        /// The key, with the tables around it and its line.
         key: String,
         /// The value as it was understood.
         value: String,
@@ -38,16 +39,57 @@ pub enum CampaignError {
     },
 }
 
-/// A parse error, with the nearest known key where a key is unknown.
+/// A parse error in the words of a campaign's writer, with what to do.
 pub(super) fn syntax(path: &Path, error: &toml::de::Error) -> CampaignError {
-    let mut message = error.to_string().trim_end().to_string();
-    if let Some(hint) = nearest_known(error.message()) {
-        message.push_str(&format!("\ndid you mean `{hint}`?"));
-    }
+    let message = error.message();
+    let shown = error.to_string();
+    let place = shown.trim_end().strip_suffix(message).unwrap_or_default();
+    let missing = message.starts_with("missing field");
+    // What the whole file lacks has no place in it.
+    let place = if missing && error.span().is_none_or(|span| span.start == span.end) {
+        ""
+    } else {
+        place.strip_prefix("TOML parse error at ").unwrap_or(place)
+    };
+    let remedy = if let Some(hint) = nearest_known(message) {
+        format!("; did you mean `{hint}`?")
+    } else if message.starts_with("unknown") {
+        "; remove it or take one of these".to_string()
+    } else if missing {
+        "; add it".to_string()
+    } else if message.starts_with("duplicate") {
+        "; keep one of the two".to_string()
+    } else {
+        String::new()
+    };
     CampaignError::Syntax {
         path: path.to_path_buf(),
-        message,
+        message: format!("{place}{}{remedy}", plainly(message)),
     }
+}
+
+/// A message of the parser in the words of TOML rather than of Rust.
+fn plainly(message: &str) -> String {
+    [
+        ("unknown field", "unknown key"),
+        ("unknown variant", "unknown value"),
+        ("missing field", "missing key or table"),
+        ("type: map", "type: a table"),
+        ("type: sequence", "type: a list"),
+        ("an array of length", "a list of length"),
+        ("expected a sequence", "expected a list"),
+        ("expected f64", "expected a number without quotes or unit"),
+        (
+            "expected u32",
+            "expected a whole number from 0 to 4294967295",
+        ),
+        ("expected u64", "expected a whole number from 0"),
+        ("expected usize", "expected a whole number from 0"),
+    ]
+    .into_iter()
+    .fold(message.to_string(), |text, (rust, plain)| {
+        text.replace(rust, plain)
+    })
 }
 
 /// The expected name that is nearest to the unknown one, from a message of the form "unknown field `a`, expected one of
@@ -57,15 +99,45 @@ fn nearest_known(message: &str) -> Option<&str> {
         return None;
     }
     let mut quoted = message.split('`').skip(1).step_by(2);
-    let unknown = quoted.next()?;
-    quoted
+    nearest(quoted.next()?, quoted)
+}
+
+/// The known name that is nearest to an unknown one, if it is near.
+pub(super) fn nearest<'a>(
+    unknown: &str,
+    known: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    known
+        .into_iter()
         .map(|known| {
-            (
-                strsim::normalized_damerau_levenshtein(unknown, known),
-                known,
-            )
+            let similarity = strsim::normalized_damerau_levenshtein(unknown, known);
+            (similarity, known)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|(similarity, _)| *similarity >= 0.5)
         .map(|(_, known)| known)
+}
+
+/// The line of a key such as `fault[1].agents[0].std` in the text of a campaign; that of the innermost table or list around
+/// it if it is not there.
+pub(super) fn line_of(text: &str, key: &str) -> Option<usize> {
+    let mut here = &DeValue::Table(DeTable::parse(text).ok()?.into_inner());
+    let mut place = None;
+    for name in key.split(['.', '[', ']']).filter(|name| !name.is_empty()) {
+        let found = match here {
+            DeValue::Table(table) => table
+                .get_key_value(name)
+                .map(|(key, value)| (key.span(), value)),
+            DeValue::Array(list) => name
+                .parse()
+                .ok()
+                .and_then(|index: usize| list.get(index))
+                .map(|value| (value.span(), value)),
+            _ => None,
+        };
+        let Some((span, value)) = found else { break };
+        (place, here) = (Some(span.start), value.get_ref());
+    }
+    let before = text.get(..place?)?;
+    Some(before.matches('\n').count() + 1)
 }

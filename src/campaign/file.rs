@@ -1,12 +1,17 @@
 //! The campaign file as it is written: one struct per TOML table, nothing checked but names and types.
 //! [`super::Campaign`] is what the rest of the program sees.
 
+mod value;
+
+pub(super) use value::in_toml;
+pub use value::{
+    ChannelsFile, DistributionFile, NormalFile, Numbers, Per, TruncatedNormalFile, Value,
+};
+
 use schemars::JsonSchema;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
+use value::{some_table, some_tables, table, tables};
 
 /// A campaign: which closed loop flies, what disturbs it, how often, and what counts as failure.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -21,27 +26,34 @@ pub struct CampaignFile {
     /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned" or a name under `[synthesis.named]`.
     pub controllers: Option<Vec<String>>,
     /// Duration and step.
+    #[serde(deserialize_with = "table")]
     pub time: TimeFile,
     /// The plant.
+    #[serde(deserialize_with = "table")]
     pub agent: AgentFile,
     /// Where the agents are to go.
+    #[serde(deserialize_with = "table")]
     pub reference: ReferenceFile,
     /// How the gains are found.
+    #[serde(deserialize_with = "table")]
     pub synthesis: SynthesisFile,
     /// Initial errors.
+    #[serde(default, deserialize_with = "some_table")]
     pub initial: Option<InitialFile>,
     /// Coupling between the agents of a team, (10).
+    #[serde(default, deserialize_with = "some_table")]
     pub coupling: Option<CouplingFile>,
     /// External disturbances d1, summed.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub disturbance: Vec<DisturbanceFile>,
     /// Actuator and sensor faults.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub fault: Vec<FaultFile>,
     /// What counts as failure.
+    #[serde(default, deserialize_with = "some_table")]
     pub verdict: Option<VerdictFile>,
     /// Conditions on the result; one that does not hold makes the run exit with 4.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub require: Vec<RequireFile>,
 }
 
@@ -124,6 +136,7 @@ pub struct ReferenceFile {
     /// Sinusoid: phase at t = 0, rad.
     pub phase_rad: Option<Numbers>,
     /// Sinusoid: blocks that override the keys above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<SinusoidFile>>,
     /// Waypoints: the points, m.
     pub points_m: Option<Vec<[f64; 3]>>,
@@ -173,8 +186,10 @@ pub struct SynthesisFile {
     #[serde(default)]
     pub named: BTreeMap<String, NamedGainsFile>,
     /// Overrides of the preset on the position channels.
+    #[serde(default, deserialize_with = "some_table")]
     pub position: Option<WeightsFile>,
     /// Overrides of the preset on the attitude channels.
+    #[serde(default, deserialize_with = "some_table")]
     pub attitude: Option<WeightsFile>,
 }
 
@@ -233,6 +248,7 @@ pub struct InitialFile {
     /// What the observers start from (default "measured").
     pub observer: Option<ObserverStart>,
     /// Blocks that override the keys above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<InitialBlock>>,
 }
 
@@ -279,6 +295,7 @@ pub struct DisturbanceFile {
     /// Sine: phase at t = 0, rad (default 0).
     pub phase_rad: Option<Value>,
     /// Blocks that override the keys above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<SignalBlock>>,
 }
 
@@ -319,6 +336,7 @@ pub struct FaultFile {
     /// Noise: standard deviation, m or rad.
     pub std: Option<Value>,
     /// Blocks that override the parameters above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<SignalBlock>>,
 }
 
@@ -366,16 +384,6 @@ pub enum FaultKind {
     Noise,
 }
 
-/// The channels of a fault.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum ChannelsFile {
-    /// "all", or "one" for a random channel per agent.
-    Word(String),
-    /// Channel numbers from 1.
-    Numbers(Vec<u32>),
-}
-
 /// `[verdict]`
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -396,113 +404,4 @@ pub struct RequireFile {
     pub controller: String,
     /// Upper limit of the one-sided 95 % Clopper-Pearson bound of the failure rate.
     pub failure_rate_upper_95: f64,
-}
-
-/// A number for all channels, or a list with one number per channel.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Numbers {
-    /// The same for all channels.
-    One(f64),
-    /// One per channel.
-    List(Vec<f64>),
-}
-
-/// A number, a distribution, or a list with one of them per channel.
-#[derive(Debug, Clone, JsonSchema)]
-#[schemars(untagged)]
-pub enum Value {
-    /// A constant.
-    Number(f64),
-    /// A distribution.
-    Distribution(DistributionFile),
-    /// One per channel.
-    List(Vec<Value>),
-}
-
-/// A distribution: exactly one of the forms, and how often it is drawn.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DistributionFile {
-    /// [low, high]
-    pub uniform: Option<[f64; 2]>,
-    /// [low, high], both positive; uniform in the logarithm.
-    pub log_uniform: Option<[f64; 2]>,
-    /// Normal.
-    pub normal: Option<NormalFile>,
-    /// Normal, restricted to an interval.
-    pub truncated_normal: Option<TruncatedNormalFile>,
-    /// One of these values.
-    pub choice: Option<Vec<f64>>,
-    /// Relative weights of `choice` (default: equal).
-    pub weights: Option<Vec<f64>>,
-    /// Drawn once per "episode", "agent" or "channel".
-    pub per: Option<Per>,
-}
-
-/// `normal`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct NormalFile {
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation.
-    pub std: f64,
-}
-
-/// `truncated_normal`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TruncatedNormalFile {
-    /// Mean before truncation.
-    pub mean: f64,
-    /// Standard deviation before truncation.
-    pub std: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-/// Who shares a draw.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Per {
-    /// All agents and channels of an episode.
-    Episode,
-    /// All channels of an agent.
-    Agent,
-    /// Nobody.
-    Channel,
-}
-
-/// Written by hand, because an untagged enum would hide which key of a distribution is wrong.
-impl<'de> Deserialize<'de> for Value {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ValueVisitor;
-        impl<'de> Visitor<'de> for ValueVisitor {
-            type Value = Value;
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, a list with one value per channel, or a distribution such as { uniform = [0, 1] }")
-            }
-            fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
-                Ok(Value::Number(value))
-            }
-            #[expect(
-                clippy::cast_precision_loss,
-                reason = "an integer in a campaign stands for a real number"
-            )]
-            fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
-                Ok(Value::Number(value as f64))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Value, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Value::List)
-            }
-            fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Value, A::Error> {
-                DistributionFile::deserialize(MapAccessDeserializer::new(table))
-                    .map(Value::Distribution)
-            }
-        }
-        deserializer.deserialize_any(ValueVisitor)
-    }
 }

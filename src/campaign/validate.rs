@@ -1,20 +1,22 @@
 //! From the file as written to the campaign that runs: every range, shape and contradiction is checked here, and nowhere
 //! later.
 
+mod reference;
+mod synthesis;
+
 use super::check::{Bounds, CHANNELS, Check, Parameter};
 use super::error::CampaignError;
 use super::file::*;
 use super::{
-    Campaign, Disturbance, FTC, Fault, FaultChannels, GainSource, Initial, NamedGains, PID,
-    PID_TUNED, Requirement, Time, Uav, Verdict,
+    Campaign, Disturbance, FIRST_ATTITUDE, Fault, FaultChannels, Initial, Requirement, Time, Uav,
+    Verdict,
 };
-use crate::reference::path::{DEFAULT_STEP_M, PathLimits};
-use crate::reference::{Reference, Sinusoid, WaypointPath};
-use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
+/// The channel whose actuator is the thrust where there is no other force.
+const THRUST: usize = FIRST_ATTITUDE - 1;
 /// The paper's UAV, section V.
 const PAPER_MASS_KG: f64 = 2.0;
 const PAPER_INERTIA_KG_M2: [f64; 3] = [1.25, 1.25, 2.2];
@@ -28,7 +30,7 @@ pub(super) fn validate(
     text: &str,
     path: &Path,
 ) -> Result<Campaign, CampaignError> {
-    let check = Check { path };
+    let check = Check { path, text };
     check.name("name", &file.name)?;
     if file.episodes == 0 {
         return Err(check.invalid(
@@ -72,7 +74,7 @@ pub(super) fn validate(
         time,
         uav,
         team,
-        reference: check.reference(&file.reference, team)?,
+        reference: check.reference(&file.reference, team, uav.actuation)?,
         synthesis,
         mass_scale: scale("agent.mass_scale", &file.agent.mass_scale)?,
         inertia_scale: scale("agent.inertia_scale", &file.agent.inertia_scale)?,
@@ -95,7 +97,7 @@ pub(super) fn validate(
             .fault
             .iter()
             .enumerate()
-            .map(|(index, fault)| check.fault(index, fault, team, &file.time))
+            .map(|(index, fault)| check.fault(index, fault, team, &file.time, uav.actuation))
             .collect::<Result<_, _>>()?,
         verdict: check.verdict(&file.verdict.unwrap_or_default())?,
     })
@@ -128,11 +130,11 @@ impl Check<'_> {
         if steps < 1.0 || (steps * step_s - duration_s).abs() > 1e-6 * step_s {
             return Err(self.invalid(
                 "time.step_s",
-                step_s,
+                in_toml(step_s),
                 &format!("must divide time.duration_s = {duration_s} into whole steps"),
                 &format!(
-                    "use {}, which gives {} steps",
-                    duration_s / steps.max(1.0),
+                    "use {} for {} in all",
+                    in_toml(duration_s / steps.max(1.0)),
                     steps.max(1.0)
                 ),
             ));
@@ -140,15 +142,18 @@ impl Check<'_> {
         if steps > MAX_STEPS {
             return Err(self.invalid(
                 "time.duration_s",
-                duration_s,
-                &format!("an episode has at most {MAX_STEPS} steps of time.step_s = {step_s}"),
+                in_toml(duration_s),
+                &format!(
+                    "an episode has at most {MAX_STEPS} steps of time.step_s = {}",
+                    in_toml(step_s)
+                ),
                 "shorten it or take longer steps",
             ));
         }
         if settle_s >= duration_s {
             return Err(self.invalid(
                 "time.settle_s",
-                settle_s,
+                in_toml(settle_s),
                 &format!("metrics must start before the end at {duration_s} s"),
                 "start them earlier",
             ));
@@ -182,7 +187,7 @@ impl Check<'_> {
         {
             return Err(self.invalid(
                 key,
-                value,
+                in_toml(value),
                 "only the actuation \"thrust\" has this",
                 "remove it or set agent.actuation = \"thrust\"",
             ));
@@ -191,8 +196,9 @@ impl Check<'_> {
             self.number(key, value.unwrap_or(default), bounds)
         };
         let inertia_kg_m2 = file.inertia_kg_m2.unwrap_or(PAPER_INERTIA_KG_M2);
-        for inertia in inertia_kg_m2 {
-            self.number("agent.inertia_kg_m2", inertia, Bounds::Positive)?;
+        for (axis, inertia) in inertia_kg_m2.into_iter().enumerate() {
+            let key = format!("agent.inertia_kg_m2[{axis}]");
+            self.number(&key, inertia, Bounds::Positive)?;
         }
         let [jx, jy, jz] = inertia_kg_m2;
         if jx > jy + jz || jy > jx + jz || jz > jx + jy {
@@ -212,7 +218,7 @@ impl Check<'_> {
         if max_tilt_rad >= std::f64::consts::FRAC_PI_2 {
             return Err(self.invalid(
                 "agent.max_tilt_rad",
-                max_tilt_rad,
+                in_toml(max_tilt_rad),
                 "must be below pi/2",
                 "use 1.0 or less",
             ));
@@ -266,255 +272,6 @@ impl Check<'_> {
         })
     }
 
-    fn reference(&self, file: &ReferenceFile, team: usize) -> Result<Reference, CampaignError> {
-        match file.kind {
-            ReferenceKind::Sinusoid => {
-                let foreign = [
-                    ("points_m", file.points_m.is_some()),
-                    ("offset_m", file.offset_m.is_some()),
-                    ("max_speed_m_s", file.max_speed_m_s.is_some()),
-                    (
-                        "max_acceleration_m_s2",
-                        file.max_acceleration_m_s2.is_some(),
-                    ),
-                    ("step_m", file.step_m.is_some()),
-                ];
-                self.unused("reference", "sinusoid", &foreign)?;
-                self.blocks("reference.agents", file.agents.as_deref(), team)?;
-                let base = SinusoidFile {
-                    center: file.center.clone(),
-                    amplitude: file.amplitude.clone(),
-                    frequency_rad_s: file.frequency_rad_s.clone(),
-                    phase_rad: file.phase_rad.clone(),
-                };
-                (0..team)
-                    .map(|agent| {
-                        self.sinusoid(
-                            &base,
-                            file.agents.as_ref().map(|blocks| &blocks[agent]),
-                            agent,
-                        )
-                    })
-                    .collect::<Result<_, _>>()
-                    .map(Reference::Sinusoid)
-            }
-            ReferenceKind::Waypoints => {
-                let foreign = [
-                    ("center", file.center.is_some()),
-                    ("amplitude", file.amplitude.is_some()),
-                    ("frequency_rad_s", file.frequency_rad_s.is_some()),
-                    ("phase_rad", file.phase_rad.is_some()),
-                    ("agents", file.agents.is_some()),
-                ];
-                self.unused("reference", "waypoints", &foreign)?;
-                self.waypoints(file, team)
-            }
-        }
-    }
-
-    fn sinusoid(
-        &self,
-        base: &SinusoidFile,
-        block: Option<&SinusoidFile>,
-        agent: usize,
-    ) -> Result<[Sinusoid; CHANNELS], CampaignError> {
-        let of = |name: &str, pick: fn(&SinusoidFile) -> Option<&Numbers>| {
-            let own = block.and_then(pick);
-            let key = if own.is_some() {
-                format!("reference.agents[{agent}].{name}")
-            } else {
-                format!("reference.{name}")
-            };
-            self.numbers(&key, own.or_else(|| pick(base)), 0.0, Bounds::Any)
-        };
-        let center = of("center", |file| file.center.as_ref())?;
-        let amplitude = of("amplitude", |file| file.amplitude.as_ref())?;
-        let frequency_rad_s = of("frequency_rad_s", |file| file.frequency_rad_s.as_ref())?;
-        let phase_rad = of("phase_rad", |file| file.phase_rad.as_ref())?;
-        Ok(std::array::from_fn(|c| Sinusoid {
-            center: center[c],
-            amplitude: amplitude[c],
-            frequency_rad_s: frequency_rad_s[c],
-            phase_rad: phase_rad[c],
-        }))
-    }
-
-    fn waypoints(&self, file: &ReferenceFile, team: usize) -> Result<Reference, CampaignError> {
-        let missing = |key: &str| {
-            self.invalid(
-                format!("reference.{key}"),
-                "absent",
-                "waypoints need it",
-                "add it",
-            )
-        };
-        let points = file
-            .points_m
-            .as_deref()
-            .ok_or_else(|| missing("points_m"))?;
-        let limits = PathLimits {
-            max_speed_m_s: file.max_speed_m_s.ok_or_else(|| missing("max_speed_m_s"))?,
-            max_acceleration_m_s2: file
-                .max_acceleration_m_s2
-                .ok_or_else(|| missing("max_acceleration_m_s2"))?,
-        };
-        self.number(
-            "reference.max_speed_m_s",
-            limits.max_speed_m_s,
-            Bounds::Positive,
-        )?;
-        self.number(
-            "reference.max_acceleration_m_s2",
-            limits.max_acceleration_m_s2,
-            Bounds::Positive,
-        )?;
-        let step_m = self.number(
-            "reference.step_m",
-            file.step_m.unwrap_or(DEFAULT_STEP_M),
-            Bounds::Positive,
-        )?;
-        self.blocks("reference.offset_m", file.offset_m.as_deref(), team)?;
-        (0..team)
-            .map(|agent| {
-                let offset = file
-                    .offset_m
-                    .as_ref()
-                    .map_or([0.0; 3], |offsets| offsets[agent]);
-                let own: Vec<[f64; 3]> = points
-                    .iter()
-                    .map(|point| std::array::from_fn(|axis| point[axis] + offset[axis]))
-                    .collect();
-                WaypointPath::with_step(&own, step_m, limits).map_err(|error| {
-                    self.invalid(
-                        "reference.points_m",
-                        format!("{points:?}"),
-                        &error.to_string(),
-                        "correct the points",
-                    )
-                })
-            })
-            .collect::<Result<_, _>>()
-            .map(Reference::Waypoints)
-    }
-
-    fn synthesis(&self, file: &SynthesisFile, uav: &Uav) -> Result<GainSource, CampaignError> {
-        let preset = file.preset.clone().unwrap_or_else(|| {
-            if uav.actuation == ActuationKind::Full {
-                "uav-paper"
-            } else {
-                "uav-physical"
-            }
-            .to_string()
-        });
-        let designs = Preset::ALL
-            .into_iter()
-            .find(|known| known.name() == preset)
-            .map(Preset::designs);
-        let Some(
-            [
-                (ChannelRole::Position, position),
-                (ChannelRole::Attitude, attitude),
-            ],
-        ) = designs.as_deref()
-        else {
-            return Err(self.invalid(
-                "synthesis.preset",
-                format!("{preset:?}"),
-                "a UAV's presets are \"uav-paper\" and \"uav-physical\"",
-                "take one of them",
-            ));
-        };
-        let beside = |file: &str| self.path.parent().unwrap_or(Path::new("")).join(file);
-        let existing = |key: String, file: &str| -> Result<PathBuf, CampaignError> {
-            let path = beside(file);
-            if path.is_file() {
-                Ok(path)
-            } else {
-                Err(self.invalid(
-                    key,
-                    format!("{file:?}"),
-                    "no such file",
-                    "name a gains.json, relative to the campaign",
-                ))
-            }
-        };
-        let mut named = Vec::new();
-        for (name, entry) in &file.named {
-            let key = format!("synthesis.named.{name}");
-            self.name(&key, name)?;
-            if [FTC, PID, PID_TUNED].contains(&name.as_str()) {
-                return Err(self.invalid(
-                    key,
-                    "a table",
-                    "this name is a built-in controller's",
-                    "choose another",
-                ));
-            }
-            named.push(NamedGains {
-                name: name.clone(),
-                gains: existing(format!("{key}.gains"), &entry.gains)?,
-                controller: entry.controller.clone().unwrap_or_else(|| FTC.to_string()),
-            });
-        }
-        Ok(GainSource {
-            designs: [
-                self.design(
-                    "synthesis.position",
-                    position.clone(),
-                    file.position.as_ref(),
-                )?,
-                self.design(
-                    "synthesis.attitude",
-                    attitude.clone(),
-                    file.attitude.as_ref(),
-                )?,
-            ],
-            preset,
-            gains: file
-                .gains
-                .as_deref()
-                .map(|gains| existing("synthesis.gains".into(), gains))
-                .transpose()?,
-            named,
-        })
-    }
-
-    fn controllers(
-        &self,
-        names: Option<&[String]>,
-        source: &GainSource,
-    ) -> Result<Vec<String>, CampaignError> {
-        let Some(names) = names else {
-            let named = source.named.iter().map(|named| named.name.clone());
-            return Ok([FTC, PID, PID_TUNED]
-                .into_iter()
-                .map(String::from)
-                .chain(named)
-                .collect());
-        };
-        let known = |name: &String| {
-            [FTC, PID, PID_TUNED].contains(&name.as_str())
-                || source.named.iter().any(|named| named.name == *name)
-        };
-        if let Some(unknown) = names.iter().find(|name| !known(name)) {
-            return Err(self.invalid(
-                "controllers",
-                format!("{unknown:?}"),
-                "controllers are \"ftc\", \"pid\", \"pid-tuned\" and the tables of [synthesis.named]",
-                "name one of them",
-            ));
-        }
-        if names.is_empty() || (1..names.len()).any(|k| names[..k].contains(&names[k])) {
-            return Err(self.invalid(
-                "controllers",
-                format!("{names:?}"),
-                "one or more, each once",
-                "list what to compare",
-            ));
-        }
-        Ok(names.to_vec())
-    }
-
     fn initial(&self, file: Option<&InitialFile>, team: usize) -> Result<Initial, CampaignError> {
         let blocks = file.and_then(|file| file.agents.as_deref());
         self.blocks("initial.agents", blocks, team)?;
@@ -562,6 +319,7 @@ impl Check<'_> {
         file: &FaultFile,
         team: usize,
         time: &TimeFile,
+        actuation: ActuationKind,
     ) -> Result<Fault, CampaignError> {
         let table = format!("fault[{index}]");
         if !file.kind.strikes(file.target) {
@@ -586,12 +344,30 @@ impl Check<'_> {
             .iter()
             .map(|onset| onset.support().1)
             .fold(0.0, f64::max);
-        if last >= time.duration_s {
+        if let Some(onset) = &file.onset_s
+            && last >= time.duration_s
+        {
             return Err(self.invalid(
                 onset_key,
-                &onset_s.distributions[0],
+                onset,
                 &format!("a fault must begin before the end at {} s", time.duration_s),
                 "begin it earlier",
+            ));
+        }
+        let channels = self.fault_channels(&format!("{table}.channels"), file.channels.as_ref())?;
+        let strikes_force = match &channels {
+            FaultChannels::One => true,
+            FaultChannels::These(channels) => channels.iter().any(|channel| *channel < THRUST),
+        };
+        if actuation == ActuationKind::Thrust
+            && file.target == FaultTarget::Actuator
+            && strikes_force
+        {
+            return Err(self.invalid(
+                format!("{table}.channels"),
+                file.channels.as_ref().map_or("\"all\"".into(), shown),
+                "the actuation \"thrust\" has no actuators along x and y",
+                "list some of [3, 4, 5, 6]: the thrust and three torques",
             ));
         }
         Ok(Fault {
@@ -602,7 +378,7 @@ impl Check<'_> {
                 file.probability.unwrap_or(1.0),
                 Bounds::Share,
             )?,
-            channels: self.fault_channels(&format!("{table}.channels"), file.channels.as_ref())?,
+            channels,
             onset_s,
             parameters: self.parameters(
                 &table,
@@ -637,13 +413,9 @@ impl Check<'_> {
                 ))
             }
             Some(other) => {
-                let value = match other {
-                    ChannelsFile::Word(word) => format!("{word:?}"),
-                    ChannelsFile::Numbers(numbers) => format!("{numbers:?}"),
-                };
                 Err(self.invalid(
                     key,
-                    value,
+                    shown(other),
                     "\"all\", \"one\", or a list of different channel numbers from 1 (x, y, z, roll, pitch, yaw)",
                     "correct it",
                 ))
@@ -685,8 +457,8 @@ impl Check<'_> {
                     return Err(self.invalid(
                         format!("require[{index}].controller"),
                         format!("{:?}", file.controller),
-                        "this controller is not among `controllers`",
-                        "add it there or name another",
+                        &format!("the campaign's controllers are {}", controllers.join(", ")),
+                        "name one of them, or add it to `controllers`",
                     ));
                 }
                 let key = format!("require[{index}].failure_rate_upper_95");
@@ -699,63 +471,12 @@ impl Check<'_> {
             })
             .collect()
     }
+}
 
-    /// A preset's weights with the file's overrides.
-    fn design(
-        &self,
-        table: &str,
-        mut design: ChannelDesign,
-        file: Option<&WeightsFile>,
-    ) -> Result<ChannelDesign, CampaignError> {
-        let file = file.cloned().unwrap_or_default();
-        let replace = |weight: &mut f64, given: Option<f64>| *weight = given.unwrap_or(*weight);
-        replace(&mut design.r, file.r);
-        replace(&mut design.rho, file.rho);
-        replace(&mut design.nu, file.nu);
-        replace(&mut design.eps2, file.eps2);
-        replace(&mut design.pid_nu, file.pid_nu);
-        replace(&mut design.smoothing.spacing_s, file.smoothing_spacing_s);
-        design.q1 = file.q1.unwrap_or(design.q1);
-        design.q2 = file.q2.unwrap_or(design.q2);
-        design.sensor_fault_input = file.sensor_fault_input.unwrap_or(design.sensor_fault_input);
-        design.smoothing.windows = file.smoothing_windows.unwrap_or(design.smoothing.windows);
-        if let SmoothingRule::Leaky { order, leak_per_s } = &mut design.smoothing.rule {
-            *order = file.smoothing_order.unwrap_or(*order);
-            replace(leak_per_s, file.smoothing_leak_per_s);
-        }
-        if let Some(weights) = file.smoothing_weights {
-            design.smoothing.rule = SmoothingRule::Weights(weights);
-        }
-        if design.sensor_fault_input[0] != 0.0 {
-            return Err(self.invalid(
-                format!("{table}.sensor_fault_input"),
-                format!("{:?}", design.sensor_fault_input),
-                "the integral is computed, not sensed, so no sensor fault enters it",
-                "begin the list with 0",
-            ));
-        }
-        match design.validate() {
-            Ok(()) => Ok(design),
-            Err(SynthesisError::InvalidDesign { key, value, limit }) => Err(self.invalid(
-                format!("{table}.{}", key.replace("smoothing.", "smoothing_")),
-                value,
-                &format!("must be {limit}"),
-                "give a value within the limit",
-            )),
-            Err(SynthesisError::WrongLength {
-                key,
-                given,
-                needed,
-                why,
-            }) => Err(self.invalid(
-                format!("{table}.{key}"),
-                format!("a list of {given}"),
-                &format!("needs {needed} values: {why}"),
-                "complete it",
-            )),
-            Err(other) => {
-                Err(self.invalid(table, "these weights", &other.to_string(), "change them"))
-            }
-        }
+/// The channels of a fault as a campaign file would say them.
+fn shown(channels: &ChannelsFile) -> String {
+    match channels {
+        ChannelsFile::Word(word) => format!("{word:?}"),
+        ChannelsFile::Numbers(numbers) => format!("{numbers:?}"),
     }
 }

@@ -1,5 +1,10 @@
 //! Episodes: from draws to groups of channels, and from their ends to outcomes.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders to come"
+)]
+
 use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES};
 use super::group::{Advance, Agent, Group, Setting, Show, Shown};
 use super::lanes::{Lane, MAX_WIDTH, Real};
@@ -73,12 +78,13 @@ impl<R: Real> Model<R> {
     /// Tabulates the references of a campaign.
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {
-        let parts: &[Range<usize>] = match campaign.uav.actuation {
-            ActuationKind::Full => &[0..1, 1..2, 2..3, 3..6],
-            ActuationKind::Thrust => &[0..6],
+        let ends: &[usize] = match campaign.uav.actuation {
+            ActuationKind::Full => &[0, 1, 2, 3, CHANNELS],
+            ActuationKind::Thrust => &[0, CHANNELS],
         };
-        let parts = parts
-            .iter()
+        let parts = ends
+            .windows(2)
+            .map(|ends| ends[0]..ends[1])
             .map(|channels| Part {
                 channels: channels.clone(),
                 table: Vec::new(),

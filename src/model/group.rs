@@ -3,6 +3,11 @@
 //! Groups are the parts of an episode that never act on each other (see `plant_uav`), so each is integrated from start to end
 //! on its own, while all it needs stays in the first-level cache.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders to come"
+)]
+
 use super::controller::{ChannelGains, OBSERVER, channel_derivative, fault_estimates, feedback};
 use super::integrator::{Step, Stepped};
 use super::lanes::{Kernel, Lane, MAX_WIDTH};

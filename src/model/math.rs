@@ -40,7 +40,7 @@ const COS: [f64; 5] = [
     0.041_666_660_457_849_5,
     -0.001_388_865_755_870_938_3,
     2.477_488_851_582_165_8e-5,
-    -2.630_331_437_103_450_7e-7,
+    -2.630_331_437_103_451e-7,
 ];
 /// atan(q) / q in powers of q^2 on [0, 1]; error 1.4e-8.
 const ATAN: [f64; 9] = [
@@ -104,10 +104,6 @@ pub(crate) fn fixed_turns(turns: f64) -> u64 {
 }
 
 /// A fraction of a turn in 32-bit fixed point, rounded to nearest.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the upper half of the rounded 64-bit value is meant"
-)]
 pub(crate) fn fixed_turns_32(turns: f64) -> u32 {
     (fixed_turns(turns).wrapping_add(1 << 31) >> 32) as u32
 }

@@ -3,6 +3,11 @@
 //! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust along
 //! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders to come"
+)]
+
 use super::lanes::{Lane, Real};
 use crate::campaign::Uav;
 

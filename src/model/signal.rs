@@ -3,6 +3,11 @@
 //! Switches are evaluated at the start of a step and held through its stages, or the method would lose its order; noise is
 //! drawn once per step. The periodic parts are evaluated at each stage's time, from phases that count in fixed point.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders to come"
+)]
+
 use super::lanes::{Lane, MAX_WIDTH};
 use super::rng::{Address, Stream};
 

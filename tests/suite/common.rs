@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 use urts_mc::campaign::Campaign;
 
 /// A file of this repository.
-pub fn repository(path: &str) -> PathBuf {
+pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
 /// A shipped campaign.
-pub fn campaign(name: &str) -> Campaign {
+pub(crate) fn campaign(name: &str) -> Campaign {
     Campaign::load(&repository(&format!("campaigns/{name}.toml"))).unwrap()
 }
 
 /// A shipped campaign with parts of its text replaced; each part must be there.
-pub fn altered(name: &str, changes: &[(&str, &str)]) -> Campaign {
+pub(crate) fn altered(name: &str, changes: &[(&str, &str)]) -> Campaign {
     let path = repository(&format!("campaigns/{name}.toml"));
     let mut text = std::fs::read_to_string(&path).unwrap();
     for (old, new) in changes {
@@ -25,7 +25,7 @@ pub fn altered(name: &str, changes: &[(&str, &str)]) -> Campaign {
 }
 
 /// A golden file.
-pub fn golden(name: &str) -> serde_json::Value {
+pub(crate) fn golden(name: &str) -> serde_json::Value {
     serde_json::from_str(
         &std::fs::read_to_string(repository(&format!("tests/golden/{name}"))).unwrap(),
     )

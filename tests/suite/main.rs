@@ -14,6 +14,16 @@
 //!
 //! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with ourselves.
 #![expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
+#![expect(
+    clippy::float_cmp,
+    reason = "tests of ranks, copies and determinism mean equality"
+)]
+#![expect(clippy::print_stdout, reason = "measured figures, shown on demand")]
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small counts"
+)]
 
 mod common;
 

@@ -120,7 +120,7 @@ fn differences(expected: &Value, trajectory: &[Snapshot]) -> Vec<(String, f64)> 
         ),
         ("u_max", trajectory, |shown| shown.u),
     ] {
-        let mut largest = vec![0.0_f64; 18];
+        let mut largest = [0.0_f64; 18];
         for snapshot in samples {
             for (largest, value) in largest.iter_mut().zip(all(snapshot, pick)) {
                 *largest = largest.max(value.abs());

@@ -1,0 +1,238 @@
+//! `[synthesis]` and the controllers that it can give.
+
+use super::super::check::Check;
+use super::super::error::{CampaignError, nearest};
+use super::super::file::*;
+use super::super::{FTC, GainSource, NamedGains, PID, PID_TUNED, Uav};
+use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
+use std::path::{Path, PathBuf};
+
+impl Check<'_> {
+    /// Where the gains come from.
+    pub(super) fn synthesis(
+        &self,
+        file: &SynthesisFile,
+        uav: &Uav,
+    ) -> Result<GainSource, CampaignError> {
+        let preset = file.preset.clone().unwrap_or_else(|| {
+            if uav.actuation == ActuationKind::Full {
+                "uav-paper"
+            } else {
+                "uav-physical"
+            }
+            .to_string()
+        });
+        let designs = Preset::ALL
+            .into_iter()
+            .find(|known| known.name() == preset)
+            .map(Preset::designs);
+        let Some(
+            [
+                (ChannelRole::Position, position),
+                (ChannelRole::Attitude, attitude),
+            ],
+        ) = designs.as_deref()
+        else {
+            return Err(self.invalid(
+                "synthesis.preset",
+                format!("{preset:?}"),
+                "a UAV's presets are \"uav-paper\" and \"uav-physical\"",
+                &take(&preset, ["uav-paper", "uav-physical"]),
+            ));
+        };
+        let beside = |file: &str| self.path.parent().unwrap_or(Path::new("")).join(file);
+        let existing = |key: String, file: &str| -> Result<PathBuf, CampaignError> {
+            let path = beside(file);
+            if path.is_file() {
+                Ok(path)
+            } else {
+                Err(self.invalid(
+                    key,
+                    format!("{file:?}"),
+                    "no such file",
+                    "name a gains.json, relative to the campaign",
+                ))
+            }
+        };
+        let mut named = Vec::new();
+        for (name, entry) in &file.named {
+            let key = format!("synthesis.named.{name}");
+            self.name(&key, name)?;
+            if [FTC, PID, PID_TUNED].contains(&name.as_str()) {
+                return Err(self.invalid(
+                    key,
+                    "a table",
+                    "this name is a built-in controller's",
+                    "choose another",
+                ));
+            }
+            named.push(NamedGains {
+                name: name.clone(),
+                gains: existing(format!("{key}.gains"), &entry.gains)?,
+                controller: entry.controller.clone().unwrap_or_else(|| FTC.to_string()),
+            });
+        }
+        Ok(GainSource {
+            designs: [
+                self.design(
+                    "synthesis.position",
+                    position.clone(),
+                    file.position.as_ref(),
+                )?,
+                self.design(
+                    "synthesis.attitude",
+                    attitude.clone(),
+                    file.attitude.as_ref(),
+                )?,
+            ],
+            preset,
+            gains: file
+                .gains
+                .as_deref()
+                .map(|gains| existing("synthesis.gains".into(), gains))
+                .transpose()?,
+            named,
+        })
+    }
+
+    /// The controllers to compare.
+    pub(super) fn controllers(
+        &self,
+        names: Option<&[String]>,
+        source: &GainSource,
+    ) -> Result<Vec<String>, CampaignError> {
+        let Some(names) = names else {
+            let named = source.named.iter().map(|named| named.name.clone());
+            return Ok([FTC, PID, PID_TUNED]
+                .into_iter()
+                .map(String::from)
+                .chain(named)
+                .collect());
+        };
+        let named = source.named.iter().map(|named| named.name.as_str());
+        let known: Vec<&str> = [FTC, PID, PID_TUNED].into_iter().chain(named).collect();
+        if let Some(at) = names
+            .iter()
+            .position(|name| !known.contains(&name.as_str()))
+        {
+            return Err(self.invalid(
+                format!("controllers[{at}]"),
+                format!("{:?}", names[at]),
+                &format!("the controllers are {}", known.join(", ")),
+                &take(&names[at], known),
+            ));
+        }
+        if names.is_empty() || (1..names.len()).any(|k| names[..k].contains(&names[k])) {
+            return Err(self.invalid(
+                "controllers",
+                format!("{names:?}"),
+                "one or more, each once",
+                "list what to compare",
+            ));
+        }
+        Ok(names.to_vec())
+    }
+
+    /// A preset's weights with the file's overrides.
+    fn design(
+        &self,
+        table: &str,
+        mut design: ChannelDesign,
+        file: Option<&WeightsFile>,
+    ) -> Result<ChannelDesign, CampaignError> {
+        let file = file.cloned().unwrap_or_default();
+        let replace = |weight: &mut f64, given: Option<f64>| *weight = given.unwrap_or(*weight);
+        replace(&mut design.r, file.r);
+        replace(&mut design.rho, file.rho);
+        replace(&mut design.nu, file.nu);
+        replace(&mut design.eps2, file.eps2);
+        replace(&mut design.pid_nu, file.pid_nu);
+        replace(&mut design.smoothing.spacing_s, file.smoothing_spacing_s);
+        if file.smoothing_weights.is_some()
+            && (file.smoothing_order.is_some() || file.smoothing_leak_per_s.is_some())
+        {
+            return Err(self.invalid(
+                format!("{table}.smoothing_weights"),
+                "given",
+                "they replace smoothing_order and smoothing_leak_per_s, which are given too",
+                "remove either",
+            ));
+        }
+        design.q1 = file.q1.unwrap_or(design.q1);
+        design.q2 = file.q2.unwrap_or(design.q2);
+        design.sensor_fault_input = file.sensor_fault_input.unwrap_or(design.sensor_fault_input);
+        design.smoothing.windows = file.smoothing_windows.unwrap_or(design.smoothing.windows);
+        if let SmoothingRule::Leaky { order, leak_per_s } = &mut design.smoothing.rule {
+            *order = file.smoothing_order.unwrap_or(*order);
+            replace(leak_per_s, file.smoothing_leak_per_s);
+        }
+        if let Some(weights) = file.smoothing_weights {
+            design.smoothing.rule = SmoothingRule::Weights(weights);
+        }
+        if design.sensor_fault_input[0] != 0.0 {
+            return Err(self.invalid(
+                format!("{table}.sensor_fault_input"),
+                format!("{:?}", design.sensor_fault_input),
+                "the integral is computed, not sensed, so no sensor fault enters it",
+                "begin the list with 0",
+            ));
+        }
+        match design.validate() {
+            Ok(()) => Ok(design),
+            Err(error) => Err(self.unsound(table, &design, error)),
+        }
+    }
+
+    /// What the synthesis says about a design, in the words of the file.
+    fn unsound(&self, table: &str, design: &ChannelDesign, error: SynthesisError) -> CampaignError {
+        match error {
+            SynthesisError::InvalidDesign { key, value, limit } => {
+                let (name, value) = match key.strip_prefix("number of ") {
+                    Some(list) => (list, format!("a list of {value}")),
+                    None => (key.as_str(), in_toml(value)),
+                };
+                self.invalid(
+                    format!("{table}.{}", name.replace("smoothing.", "smoothing_")),
+                    value,
+                    &format!("must be {limit}"),
+                    "give a value within the limit",
+                )
+            }
+            SynthesisError::WrongLength {
+                key,
+                given,
+                needed,
+                why,
+            } => self.invalid(
+                format!("{table}.{key}"),
+                format!("a list of {given}"),
+                &format!("needs {needed} values: {why}"),
+                "complete it",
+            ),
+            SynthesisError::UnstableSmoothing { eigenvalue } => {
+                let (name, value) = match &design.smoothing.rule {
+                    SmoothingRule::Leaky { leak_per_s, .. } => {
+                        ("smoothing_leak_per_s", in_toml(*leak_per_s))
+                    }
+                    SmoothingRule::Weights(weights) => {
+                        ("smoothing_weights", format!("{weights:?}"))
+                    }
+                };
+                let limit = format!(
+                    "the fault model must decay, but has an eigenvalue of real part {} 1/s",
+                    in_toml(eigenvalue.re + 0.0)
+                );
+                let remedy = "give a leak above 0, or weights whose model decays";
+                self.invalid(format!("{table}.{name}"), value, &limit, remedy)
+            }
+            other => self.invalid(table, "these weights", &other.to_string(), "change them"),
+        }
+    }
+}
+
+/// What to do about an unknown name.
+fn take<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(unknown, known).map_or("take one of them".into(), |near| {
+        format!("did you mean {near:?}?")
+    })
+}
