@@ -1,6 +1,6 @@
 //! The controller of one channel: observer (20) and feedback (21), in the form that is integrated.
 //!
-//! A channel's state is [int e, x, x', observer]. The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact
+//! A channel's state is [int e, e, e', observer]: errors are small numbers, so single precision keeps their digits. The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact
 //! reduction of the 12 of (19): the taps beyond the second are a delay line that never feeds back. The observer of a PID has
 //! the 3 states ehat.
 
@@ -69,16 +69,14 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
     sum
 }
 
-/// The derivative of the channel: [e, x', x'', ehat' of (20)].
+/// The derivative of the channel: [e, e', e'', ehat' of (20)].
 ///
 /// `told` is the feedback that the observer is told was commanded.
 #[inline(always)]
 pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
     gains: &ChannelGains<L::Real>,
     state: &[L; NS],
-    error: L,
-    rate: L,
-    acceleration: L,
+    error_acceleration: L,
     sensor_fault: L,
     told: L,
 ) -> [L; NS] {
@@ -99,12 +97,12 @@ pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
     // y - yhat of (20); C0 r cancels.
     let innovation = [
         state[0] - state[OBSERVER],
-        unexplained.mul_add(b1, error - state[OBSERVER + 1]),
-        unexplained.mul_add(b2, rate - state[OBSERVER + 2]),
+        unexplained.mul_add(b1, state[1] - state[OBSERVER + 1]),
+        unexplained.mul_add(b2, state[2] - state[OBSERVER + 2]),
     ];
-    let mut slope = [error; NS];
+    let mut slope = [state[1]; NS];
     slope[1] = state[2];
-    slope[2] = acceleration;
+    slope[2] = error_acceleration;
     slope[OBSERVER] = injected(&gains.injection[0], &innovation, state[OBSERVER + 1]);
     slope[OBSERVER + 1] = injected(&gains.injection[1], &innovation, state[OBSERVER + 2]);
     if NS == FTC_STATES {

@@ -303,24 +303,13 @@ impl<R: Real> Flight<'_, R> {
             &std::array::from_fn(|lane| self.lane_episode(lane).index),
         );
         let inertia = inertia(&campaign.uav);
-        let mut reference = campaign.reference.at(agent, 0.0);
-        if campaign.uav.actuation == ActuationKind::Thrust {
-            // The command filter starts level and at rest.
-            reference[FIRST_ATTITUDE..FIRST_ATTITUDE + 2]
-                .fill(crate::reference::ReferencePoint::default());
-        }
         let channels = std::array::from_fn(|c| {
             let channel = first + c;
             let integral = L::load(&self.lanes(agent, |draw| draw.error_integral[channel]));
             let error = L::load(&self.lanes(agent, |draw| draw.error[channel]));
             let rate = L::load(&self.lanes(agent, |draw| draw.error_rate[channel]));
             let mut state = [L::number(0.0); NS];
-            state[0] = integral;
-            state[1] =
-                L::load(&self.lanes(agent, |draw| draw.error[channel] + reference[channel].value));
-            state[2] = L::load(&self.lanes(agent, |draw| {
-                draw.error_rate[channel] + reference[channel].rate
-            }));
+            state[..3].copy_from_slice(&[integral, error, rate]);
             if campaign.initial.observer == ObserverStart::Measured {
                 state[OBSERVER..OBSERVER + 3]
                     .copy_from_slice(&gains[c].measured(integral, error, rate, settled[c]));

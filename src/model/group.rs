@@ -110,6 +110,22 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         }
     }
 
+    /// x and x' of the channels at the state of stage `STAGE`.
+    #[inline(always)]
+    fn motion<P: Plant<L, NC, NX>, const STAGE: usize>(
+        &self,
+        plant: &P,
+        rows: &[ReferenceRow<L::Real>],
+    ) -> [[L; NC]; 2] {
+        let [mut position, mut velocity] = plant.reference(rows, self.extra.at::<STAGE>());
+        for c in 0..NC {
+            let state = self.channels[c].at::<STAGE>();
+            position[c] = position[c] + state[1];
+            velocity[c] = velocity[c] + state[2];
+        }
+        [position, velocity]
+    }
+
     /// The answer of the plant at the state of stage `STAGE`; `team` is the sum of x over the team.
     #[inline(always)]
     fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
@@ -118,15 +134,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         rows: &[ReferenceRow<L::Real>],
         team: &[L; NC],
     ) -> Response<L, NC, NX> {
-        let mut position = [L::number(0.0); NC];
-        let mut velocity = position;
+        let [position, velocity] = self.motion::<P, STAGE>(&setting.plant, rows);
         let mut wanted = position;
         let mut force = self.signals.disturbance;
         for c in 0..NC {
-            let state = self.channels[c].at::<STAGE>();
-            position[c] = state[1];
-            velocity[c] = state[2];
-            wanted[c] = feedback(&setting.gains[c], state);
+            wanted[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
         }
         if setting.coupled {
             for c in 0..NC {
@@ -157,11 +169,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     ) {
         let never = L::number(f64::INFINITY);
         for c in 0..NC {
-            let [f1_hat, f2_hat] = fault_estimates(self.channels[c].at::<0>());
-            let f1 =
-                response.acceleration[c] - response.told[c] - response.reference_acceleration[c];
+            let state = self.channels[c].at::<0>();
+            let [f1_hat, f2_hat] = fault_estimates(state);
+            let f1 = response.error_acceleration[c] - response.told[c];
             let sample = Sample {
-                error: response.error[c],
+                error: state[1],
                 command: response.command[c],
                 excess: response.excess[c],
                 actuator_fault_error: f1_hat - f1,
@@ -229,13 +241,19 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         }
     }
 
+    /// The sum of x over the team, which the coupling needs.
     #[inline(always)]
-    fn team_sum<const STAGE: usize>(&self, coupled: bool) -> [L; NC] {
+    fn team_sum<P: Plant<L, NC, NX>, const STAGE: usize>(
+        &self,
+        setting: &Setting<'_, P, L::Real, NC>,
+        rows: &[ReferenceRow<L::Real>],
+    ) -> [L; NC] {
         let mut sum = [L::number(0.0); NC];
-        if coupled {
-            for agent in &self.agents {
+        if setting.coupled {
+            for (agent, rows) in self.agents.iter().zip(rows.chunks_exact(NC)) {
+                let [position, _] = agent.motion::<P, STAGE>(&setting.plant, rows);
                 for c in 0..NC {
-                    sum[c] = sum[c] + agent.channels[c].at::<STAGE>()[1];
+                    sum[c] = sum[c] + position[c];
                 }
             }
         }
@@ -249,7 +267,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         rows: &[ReferenceRow<L::Real>],
         h: &Step<L::Real>,
     ) {
-        let team = self.team_sum::<STAGE>(setting.coupled);
+        let team = self.team_sum::<P, STAGE>(setting, rows);
         let now = L::number(f64::from(self.step));
         for (agent, rows) in self.agents.iter_mut().zip(rows.chunks_exact(NC)) {
             let response = agent.respond::<P, STAGE>(setting, rows, &team);
@@ -260,9 +278,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                 let slope = channel_derivative(
                     &setting.gains[c],
                     agent.channels[c].at::<STAGE>(),
-                    response.error[c],
-                    response.error_rate[c],
-                    response.acceleration[c],
+                    response.error_acceleration[c],
                     agent.signals.sensor_fault[c],
                     response.told[c],
                 );
@@ -327,7 +343,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         let stride = self.agents.len() * NC;
         let first = 2 * self.step as usize * stride;
         let rows = &setting.table[first..first + stride];
-        let team = self.team_sum::<0>(setting.coupled);
+        let team = self.team_sum::<P, 0>(setting, rows);
         let mut shown = vec![[Shown::default(); NC]; self.agents.len()];
         for ((agent, rows), shown) in self
             .agents
@@ -336,17 +352,16 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
             .zip(&mut shown)
         {
             let response = agent.respond::<P, 0>(setting, rows, &team);
+            let [position, _] = agent.motion::<P, 0>(&setting.plant, rows);
             for c in 0..NC {
                 let state = agent.channels[c].at::<0>();
                 let [f1_hat, f2_hat] = fault_estimates(state);
-                let f1 = response.acceleration[c]
-                    - response.told[c]
-                    - response.reference_acceleration[c];
+                let f1 = response.error_acceleration[c] - response.told[c];
                 shown[c] = Shown {
-                    r: first_lane(state[1] - response.error[c]),
-                    x: first_lane(state[1]),
-                    e: first_lane(response.error[c]),
-                    e_rate: first_lane(response.error_rate[c]),
+                    r: first_lane(position[c] - state[1]),
+                    x: first_lane(position[c]),
+                    e: first_lane(state[1]),
+                    e_rate: first_lane(state[2]),
                     e_hat: first_lane(state[OBSERVER + 1]),
                     f1: first_lane(f1),
                     f1_hat: first_lane(f1_hat),

@@ -99,7 +99,7 @@ pub trait Lane:
     fn turns_sin(phase: Self::Turns) -> Self;
     /// Random words as phases uniform over a turn.
     fn turns_from_words(words: &[u32]) -> Self::Turns;
-    /// Random words as numbers in (0, 1), on the grid of odd multiples of 2^-25 that both precisions hold exactly.
+    /// Random words as numbers in (0, 1), on the grid of odd multiples of 2^-24 that both precisions hold exactly.
     fn unit_from_words(words: &[u32]) -> Self;
 
     /// Sine and cosine of an angle of at most a few turns, rad.
@@ -201,7 +201,7 @@ impl Lane for f64 {
     }
     #[inline(always)]
     fn unit_from_words(words: &[u32]) -> Self {
-        (f64::from(words[0] >> 8) + 0.5) * math::UNIT_SPACING
+        (f64::from(words[0] >> 9) + 0.5) * math::UNIT_SPACING
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
@@ -297,10 +297,10 @@ impl Lane for f32 {
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
-        reason = "24 bits and a half fit a single"
+        reason = "23 bits and a half fit a single"
     )]
     fn unit_from_words(words: &[u32]) -> Self {
-        ((words[0] >> 8) as f32 + 0.5) * f32::from_f64(math::UNIT_SPACING)
+        ((words[0] >> 9) as f32 + 0.5) * f32::from_f64(math::UNIT_SPACING)
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

@@ -6,8 +6,8 @@
 
 use super::lanes::Lane;
 
-/// Spacing of the numbers that [`Lane::unit_from_words`] makes from 24 random bits.
-pub(crate) const UNIT_SPACING: f64 = 1.0 / 16_777_216.0;
+/// Spacing of the numbers that [`Lane::unit_from_words`] makes from 23 random bits.
+pub(crate) const UNIT_SPACING: f64 = 1.0 / 8_388_608.0;
 /// A quarter of a turn in 32-bit fixed point.
 pub(crate) const QUARTER_TURN: u32 = 1 << 30;
 /// The sign bit of a single.

@@ -36,14 +36,8 @@ pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
 
 /// How an agent's channels answer.
 pub(crate) struct Response<L, const NC: usize, const NX: usize> {
-    /// e = x - r.
-    pub(crate) error: [L; NC],
-    /// e'.
-    pub(crate) error_rate: [L; NC],
-    /// x''.
-    pub(crate) acceleration: [L; NC],
-    /// r''.
-    pub(crate) reference_acceleration: [L; NC],
+    /// x'' - r''.
+    pub(crate) error_acceleration: [L; NC],
     /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
     pub(crate) told: [L; NC],
     /// The command u of (9) after limits and faults.
@@ -60,8 +54,23 @@ pub(crate) trait Plant<L: Lane, const NC: usize, const NX: usize>:
 {
     /// Whether commands can be cut by limits.
     const LIMITED: bool;
+
+    /// The reference of one agent and its rate: `[r, r']`.
+    fn reference(&self, rows: &[ReferenceRow<L::Real>], extra: &[L; NX]) -> [[L; NC]; 2];
+
     /// The answer of one agent.
     fn respond(&self, inputs: &Inputs<'_, L, NC>, extra: &[L; NX]) -> Response<L, NC, NX>;
+}
+
+/// The reference of channels that the table holds.
+#[inline(always)]
+fn tabulated<L: Lane, const NC: usize>(rows: &[ReferenceRow<L::Real>]) -> [[L; NC]; 2] {
+    let mut reference = [[L::number(0.0); NC]; 2];
+    for c in 0..NC {
+        reference[0][c] = L::splat(rows[c][0]);
+        reference[1][c] = L::splat(rows[c][1]);
+    }
+    reference
 }
 
 /// Modelled inertia of each channel.
@@ -110,16 +119,19 @@ impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
     const LIMITED: bool = false;
 
     #[inline(always)]
+    fn reference(&self, rows: &[ReferenceRow<L::Real>], _extra: &[L; 0]) -> [[L; 1]; 2] {
+        tabulated(rows)
+    }
+
+    #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 1>, _extra: &[L; 0]) -> Response<L, 1, 0> {
-        let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[0]);
+        let [_, _, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[0]);
         let demanded = inputs.feedback[0].mul_add(L::splat(self.mass), feedforward);
         let command = demanded.mul_add(inputs.command_gain[0], inputs.command_bias[0]);
         let force = inputs.velocity[0].mul_add(-L::splat(self.drag), command + inputs.force[0]);
+        let offset = r_acceleration + L::splat(self.gravity);
         Response {
-            error: [inputs.position[0] - r],
-            error_rate: [inputs.velocity[0] - r_rate],
-            acceleration: [force.mul_add(inputs.inverse_inertia[0], -L::splat(self.gravity))],
-            reference_acceleration: [r_acceleration],
+            error_acceleration: [force.mul_add(inputs.inverse_inertia[0], -offset)],
             told: inputs.feedback,
             command: [command],
             excess: [L::number(0.0)],
@@ -169,25 +181,27 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
     const LIMITED: bool = false;
 
     #[inline(always)]
+    fn reference(&self, rows: &[ReferenceRow<L::Real>], _extra: &[L; 0]) -> [[L; 3]; 2] {
+        tabulated(rows)
+    }
+
+    #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
         let zero = L::number(0.0);
-        let (mut error, mut error_rate, mut reference_acceleration) =
-            ([zero; 3], [zero; 3], [zero; 3]);
         let (mut command, mut torque) = ([zero; 3], [zero; 3]);
         for i in 0..3 {
-            let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[i]);
-            error[i] = inputs.position[i] - r;
-            error_rate[i] = inputs.velocity[i] - r_rate;
-            reference_acceleration[i] = r_acceleration;
+            let feedforward = L::splat(inputs.reference[i][3]);
             let demanded = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
             command[i] = demanded.mul_add(inputs.command_gain[i], inputs.command_bias[i]);
             torque[i] = command[i] + inputs.force[i];
         }
+        let mut error_acceleration =
+            self.acceleration(torque, inputs.velocity, *inputs.inverse_inertia);
+        for i in 0..3 {
+            error_acceleration[i] = error_acceleration[i] - L::splat(inputs.reference[i][2]);
+        }
         Response {
-            error,
-            error_rate,
-            acceleration: self.acceleration(torque, inputs.velocity, *inputs.inverse_inertia),
-            reference_acceleration,
+            error_acceleration,
             told: inputs.feedback,
             command,
             excess: [zero; 3],
@@ -262,14 +276,21 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
     const LIMITED: bool = true;
 
     #[inline(always)]
+    fn reference(&self, rows: &[ReferenceRow<L::Real>], extra: &[L; 4]) -> [[L; 6]; 2] {
+        let mut reference = tabulated(rows);
+        let [roll, pitch, roll_rate, pitch_rate] = *extra;
+        (reference[0][3], reference[0][4]) = (roll, pitch);
+        (reference[1][3], reference[1][4]) = (roll_rate, pitch_rate);
+        reference
+    }
+
+    #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 6>, extra: &[L; 4]) -> Response<L, 6, 4> {
         let zero = L::number(0.0);
         let [roll, pitch, roll_rate, pitch_rate] = *extra;
         let [yaw, yaw_rate, yaw_acceleration, _] = splat_row::<L>(&inputs.reference[5]);
-        let (mut error, mut error_rate, mut reference_acceleration) =
-            ([zero; 6], [zero; 6], [zero; 6]);
-        let (mut told, mut command, mut excess, mut acceleration) =
-            ([zero; 6], [zero; 6], [zero; 6], [zero; 6]);
+        let (mut told, mut command, mut excess) = ([zero; 6], [zero; 6], [zero; 6]);
+        let mut error_acceleration = [zero; 6];
 
         // The force that the position loop demands, (9).
         let mut force = [zero; 3];
@@ -305,16 +326,12 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         excess[2] = thrust_wanted - thrust;
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
         for i in 0..3 {
-            let [r, r_rate, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[i]);
-            error[i] = inputs.position[i] - r;
-            error_rate[i] = inputs.velocity[i] - r_rate;
-            reference_acceleration[i] = r_acceleration;
+            let feedforward = L::splat(inputs.reference[i][3]);
             told[i] = thrust.mul_add(commanded_axis[i], -feedforward) * L::splat(self.inverse_mass);
             command[i] = force[i].mul_add(inputs.command_gain[i], inputs.command_bias[i]);
         }
 
         // Torques: demanded along the filtered attitude, then limited.
-        let angles = [roll, pitch, yaw];
         let rates = [roll_rate, pitch_rate, yaw_rate];
         let accelerations = [roll_acceleration, pitch_acceleration, yaw_acceleration];
         let limit = L::splat(self.max_torque);
@@ -322,9 +339,6 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         for i in 0..3 {
             let c = i + 3;
             let inertia = L::splat(self.attitude.inertia[i]);
-            error[c] = inputs.position[c] - angles[i];
-            error_rate[c] = inputs.velocity[c] - rates[i];
-            reference_acceleration[c] = accelerations[i];
             let gyroscopic =
                 rates[(i + 1) % 3] * rates[(i + 2) % 3] * L::splat(self.attitude.gyro[i]);
             let non_inertial = gyroscopic.mul_add(inertia, rates[i] * L::splat(self.attitude.drag));
@@ -344,18 +358,22 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         for i in 0..3 {
             let net = applied.mul_add(true_axis[i], inputs.force[i]);
             let net = inputs.velocity[i].mul_add(-L::splat(self.drag), net);
-            let gravity = if i == 2 { L::splat(self.gravity) } else { zero };
-            acceleration[i] = net.mul_add(inputs.inverse_inertia[i], -gravity);
+            let gravity = if i == 2 {
+                self.gravity
+            } else {
+                L::Real::default()
+            };
+            let offset = L::splat(inputs.reference[i][2]) + L::splat(gravity);
+            error_acceleration[i] = net.mul_add(inputs.inverse_inertia[i], -offset);
         }
         let [_, _, _, p, q, s] = inputs.velocity;
         let [_, _, _, ix, iy, iz] = *inputs.inverse_inertia;
         let angular = self.attitude.acceleration(torque, [p, q, s], [ix, iy, iz]);
-        acceleration[3..].copy_from_slice(&angular);
+        for i in 0..3 {
+            error_acceleration[i + 3] = angular[i] - accelerations[i];
+        }
         Response {
-            error,
-            error_rate,
-            acceleration,
-            reference_acceleration,
+            error_acceleration,
             told,
             command,
             excess,

@@ -231,7 +231,7 @@ lane_block!(F32x8, Turns8, 8, __m256, __m256i, features: "avx2,fma",
     xor: _mm256_xor_ps, floor: (_mm256_floor_ps),
     select_le: select_le_8,
     add_int: _mm256_add_epi32, sub_int: _mm256_sub_epi32, and_int: _mm256_and_si256,
-    shl: (_mm256_slli_epi32::<1>), sar: (_mm256_srai_epi32::<23>), shr: (_mm256_srli_epi32::<8>),
+    shl: (_mm256_slli_epi32::<1>), sar: (_mm256_srai_epi32::<23>), shr: (_mm256_srli_epi32::<9>),
     convert: _mm256_cvtepi32_ps, as_float: _mm256_castsi256_ps, as_int: _mm256_castps_si256);
 
 lane_block!(F32x16, Turns16, 16, __m512, __m512i, features: "avx512f,avx512dq,avx2,fma",
@@ -242,5 +242,5 @@ lane_block!(F32x16, Turns16, 16, __m512, __m512i, features: "avx512f,avx512dq,av
     xor: _mm512_xor_ps, floor: (_mm512_roundscale_ps::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>),
     select_le: select_le_16,
     add_int: _mm512_add_epi32, sub_int: _mm512_sub_epi32, and_int: _mm512_and_si512,
-    shl: (_mm512_slli_epi32::<1>), sar: (_mm512_srai_epi32::<23>), shr: (_mm512_srli_epi32::<8>),
+    shl: (_mm512_slli_epi32::<1>), sar: (_mm512_srai_epi32::<23>), shr: (_mm512_srli_epi32::<9>),
     convert: _mm512_cvtepi32_ps, as_float: _mm512_castsi512_ps, as_int: _mm512_castps_si512);

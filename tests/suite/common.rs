@@ -1,7 +1,10 @@
 //! What several test modules need.
 
 use std::path::{Path, PathBuf};
+use urts_mc::backend::cpu::{Cpu, Flown, Precision};
 use urts_mc::campaign::Campaign;
+use urts_mc::gains::GainSet;
+use urts_mc::tables::Tables;
 
 /// A file of this repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
@@ -30,4 +33,19 @@ pub(crate) fn golden(name: &str) -> serde_json::Value {
         &std::fs::read_to_string(repository(&format!("tests/golden/{name}"))).unwrap(),
     )
     .unwrap()
+}
+
+/// Flies a campaign with its own gains on the widest lanes.
+pub(crate) fn fly(campaign: &Campaign, precision: Precision) -> Vec<Flown> {
+    let gains = GainSet::obtain(campaign).unwrap();
+    Cpu::new(campaign, &gains.loops(), precision, None).fly(0..campaign.episodes, &|_| ())
+}
+
+/// The tables of a campaign.
+pub(crate) fn tables(campaign: &Campaign, precision: Precision) -> Tables {
+    let mut tables = Tables::new(campaign);
+    for flown in fly(campaign, precision) {
+        tables.add(campaign, &flown);
+    }
+    tables
 }

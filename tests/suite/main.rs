@@ -27,8 +27,10 @@
 
 mod common;
 
+mod campaigns;
 mod determinism;
 mod lapack;
+mod model;
 mod path;
 mod scenarios;
 mod statistics;

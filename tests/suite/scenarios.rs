@@ -139,7 +139,7 @@ fn all(snapshot: &Snapshot, pick: fn(&Shown) -> f64) -> Vec<f64> {
 }
 
 fn root_mean_squares(samples: &[Snapshot], pick: fn(&Shown) -> f64) -> Vec<f64> {
-    let mut sums = vec![0.0; 18];
+    let mut sums = [0.0; 18];
     for snapshot in samples {
         for (sum, value) in sums.iter_mut().zip(all(snapshot, pick)) {
             *sum += value * value;

@@ -189,7 +189,7 @@ impl Check<'_> {
             SynthesisError::InvalidDesign { key, value, limit } => {
                 let (name, value) = match key.strip_prefix("number of ") {
                     Some(list) => (list, format!("a list of {value}")),
-                    None => (key.as_str(), in_toml(value)),
+                    None => (key.as_str(), value.to_string()),
                 };
                 self.invalid(
                     format!("{table}.{}", name.replace("smoothing.", "smoothing_")),

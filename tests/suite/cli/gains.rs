@@ -1,0 +1,146 @@
+//! Gains from a file.
+
+use super::{Place, smoke};
+use serde_json::{Value, json};
+
+const PRESET: &str = "preset = \"uav-paper\"";
+
+/// A folder with the smoke campaign, its gains in g.json, and d.toml, which takes them from there.
+fn with_gains() -> (Place, Value) {
+    let place = Place::smoke(&[]);
+    let gains = place.succeeds(&["synthesize", "c.toml", "--json"]);
+    place.write("g.json", &gains);
+    place.write("d.toml", smoke(&[(PRESET, "gains = \"g.json\"")]));
+    (place, serde_json::from_str(&gains).unwrap())
+}
+
+#[test]
+fn synthesized_gains_fed_back_as_a_file_give_the_same_comparison() {
+    let (place, gains) = with_gains();
+    let run = |campaign: &str, out: &str| place.json(&["run", campaign, "--out", out, "--json"]);
+    let synthesized = run("c.toml", "c");
+    let read = run("d.toml", "d");
+    assert!(synthesized["comparisons"].as_array().unwrap().len() > 1);
+    for part in ["failures", "comparisons"] {
+        assert_eq!(synthesized[part], read[part]);
+    }
+    // The numbers of gains.json are those of `synthesize --json`.
+    let written: Value = serde_json::from_str(&place.read("c/gains.json")).unwrap();
+    let k = |file: &Value| file["controllers"]["ftc"]["position"]["k"].clone();
+    assert_eq!(k(&written), k(&gains));
+
+    let mut weaker = gains;
+    let first = &mut weaker["controllers"]["ftc"]["position"]["k"][0];
+    *first = json!(0.9 * first.as_f64().unwrap());
+    place.write("g.json", weaker.to_string());
+    let other = run("d.toml", "e");
+    assert_ne!(
+        other["comparisons"], synthesized["comparisons"],
+        "the file is not read"
+    );
+}
+
+#[test]
+fn a_named_controller_flies_beside_the_built_in_ones() {
+    let (place, _) = with_gains();
+    place.write(
+        "e.toml",
+        smoke(&[
+            (
+                PRESET,
+                "preset = \"uav-paper\"\nnamed.twin = { gains = \"g.json\", controller = \"pid\" }",
+            ),
+            ("\"pid-tuned\"]", "\"twin\"]"),
+        ]),
+    );
+    let found = place.json(&["run", "e.toml", "--out", "out", "--json"]);
+    let pair = |a: &str, b: &str| {
+        let all = found["comparisons"].as_array().unwrap().iter();
+        let of = |pair: &&Value| pair["a"] == a && pair["b"] == b;
+        all.clone().find(of).unwrap()["log_ratios"].clone()
+    };
+    assert_eq!(pair("ftc", "twin"), pair("ftc", "pid"));
+    assert_ne!(pair("ftc", "twin"), pair("pid", "twin"));
+}
+
+#[test]
+fn gains_that_do_not_stabilise_exit_with_3_and_the_reason() {
+    let (place, gains) = with_gains();
+    for (controller, role, pointer, value, words) in [
+        (
+            "ftc",
+            "position",
+            "/k/1",
+            500.0,
+            ["A + B K", "does not stabilise"],
+        ),
+        (
+            "pid",
+            "attitude",
+            "/k/1",
+            500.0,
+            ["A + B K", "does not stabilise"],
+        ),
+        (
+            "ftc",
+            "attitude",
+            "/l/1/1",
+            900.0,
+            ["A + L C", "does not converge"],
+        ),
+    ] {
+        let mut tampered = gains.clone();
+        let channel = &mut tampered["controllers"][controller][role];
+        *channel.pointer_mut(pointer).unwrap() = json!(value);
+        place.write("g.json", tampered.to_string());
+        let said = place.refuses(&["run", "d.toml", "--out", "out"], 3, &words);
+        let place = format!("error: g.json: controllers.{controller}.{role}: ");
+        assert!(said.starts_with(&place), "{said}");
+    }
+}
+
+#[test]
+fn a_gains_file_of_another_form_is_refused() {
+    let (place, gains) = with_gains();
+    let refused = |content: &str, words: &[&str]| {
+        place.write("g.json", content);
+        let said = place.refuses(&["run", "d.toml", "--out", "out"], 2, words);
+        assert!(said.starts_with("error: g.json: "), "{said}");
+    };
+    let changed = |change: fn(&mut Value)| {
+        let mut gains = gains.clone();
+        change(&mut gains);
+        gains.to_string()
+    };
+    refused("", &["gains.json"]);
+    refused("name = 1", &["line 1", "gains.json"]);
+    refused(
+        &changed(|gains| gains["extra"] = json!(1)),
+        &["`extra`", "`controllers`"],
+    );
+    refused(
+        &changed(|gains| gains["controllers"]["ftc"]["position"]["kk"] = json!(1)),
+        &["`kk`", "`k` or `l`"],
+    );
+    refused(
+        &changed(|gains| gains["format"] = json!(2)),
+        &["format = 2", "format 1"],
+    );
+    refused(
+        &changed(|gains| gains["controllers"]["pid"] = gains["controllers"]["ftc"].take()),
+        &["line 1"],
+    );
+    refused(
+        &changed(|gains| {
+            gains["controllers"].as_object_mut().unwrap().remove("pid");
+        }),
+        &["controllers.pid", "absent", "ftc, pid-tuned"],
+    );
+    refused(
+        &changed(|gains| {
+            gains["controllers"]["ftc"]["attitude"] =
+                gains["controllers"]["pid"]["attitude"].clone();
+        }),
+        &["controllers.ftc", "position and attitude differ in kind"],
+    );
+}

@@ -1,0 +1,168 @@
+//! The output directory: what may be written, and that it is written whole or not at all.
+
+use super::{Place, smoke};
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
+/// What every run writes.
+const FILES: [&str; 8] = [
+    "channels.parquet",
+    "comparison.csv",
+    "comparison.parquet",
+    "episodes.parquet",
+    "gains.json",
+    "manifest.json",
+    "summary.csv",
+    "summary.parquet",
+];
+
+/// The names in a folder, hidden ones too.
+fn names(dir: &Path) -> Vec<String> {
+    let name = |entry: fs::DirEntry| entry.file_name().into_string().unwrap();
+    let mut names: Vec<String> = fs::read_dir(dir)
+        .unwrap()
+        .map(|entry| name(entry.unwrap()))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_writes_its_files_and_no_others() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    assert_eq!(names(&place.path("out")), FILES);
+    assert_eq!(names(place.0.path()), ["c.toml", "out"]);
+    // Without --out, under the campaign's name; folders are made as needed.
+    place.succeeds(&["run", "c.toml", "--csv"]);
+    let mut more: Vec<&str> = FILES.to_vec();
+    more.extend(["episodes.csv", "channels.csv"]);
+    more.sort_unstable();
+    assert_eq!(names(&place.path("reports/smoke")), more);
+    assert_eq!(
+        place.read("out/summary.csv"),
+        place.read("reports/smoke/summary.csv")
+    );
+    // 3 episodes, 3 controllers, 3 agents, 6 channels.
+    assert_eq!(place.rows("reports/smoke/episodes.csv").len(), 27);
+    assert_eq!(place.rows("reports/smoke/channels.csv").len(), 27 * 6);
+}
+
+#[test]
+fn a_directory_that_cannot_be_written_is_refused() {
+    let place = Place::smoke(&[]);
+    for out in ["c.toml", "c.toml/below", "/proc/urts-mc"] {
+        let words = [
+            &format!("error: {out}: cannot be written ("),
+            "give another directory with --out",
+        ];
+        place.refuses(&["run", "c.toml", "--out", out], 2, &words);
+        place.refuses(&["run", "c.toml", "--overwrite", "--out", out], 2, &words);
+    }
+}
+
+#[test]
+fn another_campaigns_run_is_replaced_only_on_request() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    place.write("d.toml", smoke(&[("max_rmse = 1.0", "max_rmse = 0.9")]));
+    place.refuses(
+        &["run", "d.toml", "--out", "out"],
+        2,
+        &[
+            "error: out: holds a run of another campaign text (\"smoke\")",
+            "--out",
+            "--overwrite",
+        ],
+    );
+    // The same text may be run again, with other numbers too.
+    place.succeeds(&["run", "c.toml", "--out", "out", "--seed", "7"]);
+    assert!(place.read("out/manifest.json").contains("\"seed\": 7"));
+    place.succeeds(&["run", "d.toml", "--out", "out", "--overwrite"]);
+    assert!(place.read("out/manifest.json").contains("max_rmse = 0.9"));
+}
+
+#[test]
+fn a_directory_with_other_files_is_refused_and_keeps_them_when_overwritten() {
+    let place = Place::smoke(&[]);
+    fs::create_dir(place.path("out")).unwrap();
+    place.write("out/notes.txt", "mine");
+    let words = [
+        "error: out: holds files, but no finished run",
+        "--overwrite",
+    ];
+    place.refuses(&RUN, 2, &words);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--overwrite"]);
+    assert_eq!(place.read("out/notes.txt"), "mine");
+}
+
+#[test]
+fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
+    place.succeeds(&["replay", "out", "--episode", "0"]);
+    assert_eq!(names(&place.path("out")).len(), FILES.len() + 3);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--seed", "7"]);
+    assert_eq!(names(&place.path("out")), FILES);
+}
+
+#[test]
+fn a_run_that_cannot_finish_leaves_no_half_file_and_no_manifest() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    // A folder stands where a file has to go.
+    fs::remove_file(place.path("out/comparison.csv")).unwrap();
+    fs::create_dir(place.path("out/comparison.csv")).unwrap();
+    let ended = place.program(&RUN);
+    assert_eq!((ended.code, ended.stdout.as_str()), (2, ""));
+    let said = ended.stderr;
+    assert!(
+        said.starts_with("error: out/comparison.csv: cannot be written ("),
+        "{said}"
+    );
+    let left = names(&place.path("out"));
+    assert!(!left.contains(&"manifest.json".to_string()), "looks whole");
+    assert!(!left.iter().any(|name| name.starts_with('.')), "{left:?}");
+    for name in left.iter().filter(|name| name.ends_with(".parquet")) {
+        let bytes = fs::read(place.path("out").join(name)).unwrap();
+        assert!(
+            bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"),
+            "{name}"
+        );
+    }
+    // Nor does anything take it for a run.
+    place.refuses(
+        &["replay", "out", "--episode", "0"],
+        2,
+        &["no readable run"],
+    );
+    place.refuses(&RUN, 2, &["no finished run"]);
+}
+
+#[test]
+fn a_killed_run_leaves_the_earlier_one_as_it_was_or_nothing() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    let before = place.everything();
+    for out in ["out", "new"] {
+        let mut flying = place
+            .command(&["run", "c.toml", "--episodes", "1000000", "--out", out])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Synthesis takes a fraction of a second, a million episodes minutes: it is flying.
+        sleep(Duration::from_secs(1));
+        assert!(
+            flying.try_wait().unwrap().is_none(),
+            "ended before the kill"
+        );
+        flying.kill().unwrap();
+        flying.wait().unwrap();
+        assert!(place.everything() == before, "{out} changed");
+    }
+}

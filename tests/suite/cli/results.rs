@@ -1,0 +1,270 @@
+//! What a good campaign gives: plans, gains, findings, verdicts and replays.
+
+use super::{Place, smoke};
+use crate::common::repository;
+use serde_json::Value;
+use std::fs;
+
+#[test]
+fn check_shows_what_would_be_drawn_and_flies_and_writes_nothing() {
+    let place = Place::smoke(&[]);
+    let before = place.everything();
+    // So many episodes would take days.
+    let many = ["--episodes", "4000000000"];
+    let text = place.succeeds(&[&["check", "c.toml"], &many as &[&str]].concat());
+    for word in [
+        "4000000000 episodes of 3 UAVs",
+        "ftc, pid, pid-tuned",
+        "certified rho",
+        "mass_scale",
+        "fault[0] loss-of-effectiveness magnitude",
+    ] {
+        assert!(text.contains(word), "{word:?} is missing from: {text}");
+    }
+    let plan = place.json(&[&["check", "c.toml", "--json"], &many as &[&str]].concat());
+    assert_eq!(plan["episodes"], 4_000_000_000_u64);
+    let range = |name: &str| {
+        let drawn = plan["drawn"].as_array().unwrap().iter();
+        let found = drawn.clone().find(|row| row["name"] == name).unwrap();
+        (
+            found["lowest"].as_f64().unwrap(),
+            found["highest"].as_f64().unwrap(),
+        )
+    };
+    let (low, high) = range("fault[0] loss-of-effectiveness magnitude");
+    // Uniform on [0.1, 0.5], some 150 draws: both ends are within 0.05 but for odds of 1e-8.
+    assert!((0.1..0.15).contains(&low) && (0.45..0.5).contains(&high));
+    assert_eq!(range("kappa"), (0.0, 1.0));
+    assert!(place.everything() == before);
+}
+
+#[test]
+fn synthesize_shows_gains_poles_margins_and_certificate() {
+    let place = Place::smoke(&[]);
+    let before = place.everything();
+    let text = place.succeeds(&["synthesize", "c.toml"]);
+    for word in [
+        "c.toml: preset uav-paper",
+        "K  -",
+        "poles of A + B K",
+        "poles of A + L C",
+        "margins  Ms",
+        "certified attenuation rho",
+        "check   ok",
+    ] {
+        assert!(text.contains(word), "{word:?} is missing from: {text}");
+    }
+    assert!(!text.contains("FAILED"), "{text}");
+    let gains = place.json(&["synthesize", "c.toml", "--json"]);
+    let ftc = &gains["controllers"]["ftc"];
+    let rho = &ftc["findings"]["position"]["certificate"]["rho"];
+    assert!((1.0..30.0).contains(&rho.as_f64().unwrap()));
+    let k: Vec<f64> = serde_json::from_value(ftc["position"]["k"].clone()).unwrap();
+    assert!(
+        text.contains(&format!("K  {:.5}  {:.5}", k[0], k[1])),
+        "{text}"
+    );
+    assert!(place.everything() == before);
+}
+
+#[test]
+fn findings_as_json_are_those_of_the_text_and_of_the_tables() {
+    let place = Place::smoke(&[]);
+    let found = place.json(&["run", "c.toml", "--out", "a", "--json", "--csv"]);
+    let text = place.succeeds(&["run", "c.toml", "--out", "b"]);
+    assert_eq!(found["manifest"]["episodes"], 3);
+    assert_eq!(found["unmet_requirements"].as_array().unwrap().len(), 0);
+    let rates = found["failures"].as_array().unwrap();
+    for controller in ["ftc", "pid", "pid-tuned"] {
+        let all = |rate: &&Value| rate["controller"] == controller && rate["stratum"] == "all";
+        let rate = rates.iter().find(all).unwrap();
+        let line = text.lines().find(|line| {
+            line.split_whitespace().next() == Some(controller) && line.contains(" of 3 ")
+        });
+        let shown = format!(" {} of 3 ", rate["failed"]);
+        assert!(
+            line.unwrap().contains(&shown),
+            "{shown:?} is missing from: {text}"
+        );
+        let rows = place.rows("a/episodes.csv");
+        let failed = |row: &&std::collections::BTreeMap<String, String>| {
+            row["controller"] == controller && row["agent"] == "0" && row["episode_status"] != "ok"
+        };
+        assert_eq!(rate["failed"], rows.iter().filter(failed).count());
+    }
+    assert!(
+        rates.iter().any(|rate| rate["failed"] != 0),
+        "nothing fails here"
+    );
+}
+
+#[test]
+fn a_requirement_that_does_not_hold_exits_with_4_after_writing_everything() {
+    let with = |controller: &str, limit: &str| {
+        let text = format!(
+            "[[require]]\ncontroller = \"{controller}\"\nfailure_rate_upper_95 = {limit}\n[verdict]"
+        );
+        smoke(&[("[verdict]", &text)])
+    };
+    let place = Place::with(&with("ftc", "0.02"));
+    for json in [false, true] {
+        let more: &[&str] = if json { &["--json"] } else { &[] };
+        let ended = place.program(&[&["run", "c.toml", "--out", "out"], more].concat());
+        assert_eq!(ended.code, 4);
+        let said = ended.stderr;
+        // 0.98^149 < 0.05 < 0.98^148: so many episodes without failure show a rate below 0.02.
+        for word in [
+            "error: c.toml: require[0].failure_rate_upper_95 = 0.02: ",
+            "\"ftc\" failed in 0 of 3 episodes",
+            "below 0.6316",
+            "fly at least 149 episodes",
+        ] {
+            assert!(said.contains(word), "{word:?} is missing from: {said}");
+        }
+        if json {
+            let found: Value = serde_json::from_str(&ended.stdout).unwrap();
+            assert_eq!(found["unmet_requirements"][0]["limit"], 0.02);
+        } else {
+            assert!(ended.stdout.contains("written to out"));
+        }
+        assert_eq!(place.rows("out/summary.csv")[0]["controller"], "ftc");
+        assert!(place.path("out/manifest.json").is_file());
+    }
+    // More episodes do not help where the controller fails; a limit that holds does.
+    let place = Place::with(&with("pid", "0.5"));
+    let ended = place.program(&["run", "c.toml", "--out", "out"]);
+    assert_eq!(ended.code, 4);
+    assert!(
+        ended.stderr.contains("\"pid\" failed in 3 of 3 episodes"),
+        "{}",
+        ended.stderr
+    );
+    assert!(
+        ended.stderr.contains("change the controller or the limit"),
+        "{}",
+        ended.stderr
+    );
+    Place::with(&with("ftc", "0.64")).succeeds(&["run", "c.toml", "--out", "out"]);
+}
+
+#[test]
+fn a_diverging_episode_is_a_row_with_a_verdict_and_no_nan() {
+    let absurd_coupling = [("{ choice = [0.0, 1.0] }", "{ choice = [0.0, 1e6] }")];
+    let no_actuators = [
+        ("probability = 0.25", "probability = 1.0"),
+        ("channels = \"one\"", "channels = \"all\""),
+        ("magnitude = { uniform = [0.1, 0.5] }", "magnitude = 1.0"),
+    ];
+    for changes in [&absurd_coupling as &[_], &no_actuators] {
+        for precision in ["f32", "f64"] {
+            let place = Place::smoke(changes);
+            let text = place.succeeds(&[
+                "run",
+                "c.toml",
+                "--out",
+                "out",
+                "--csv",
+                "--episodes",
+                "8",
+                "--precision",
+                precision,
+            ]);
+            assert!(text.contains(" diverged)"), "{text}");
+            let files = ["summary", "comparison", "episodes", "channels"];
+            let tables = files.map(|name| place.read(&format!("out/{name}.csv")));
+            for all in tables.iter().chain([&text]) {
+                assert!(!all.to_lowercase().contains("nan"), "a NaN in: {all}");
+            }
+            let rows = place.rows("out/episodes.csv");
+            assert_eq!(rows.len(), 8 * 3 * 3, "a row is missing");
+            let (diverged, finite): (Vec<_>, Vec<_>) =
+                rows.iter().partition(|row| row["status"] == "diverged");
+            // Both kinds occur, so that a campaign of which nothing is left is not all that is tested.
+            assert!(
+                !diverged.is_empty() && !finite.is_empty(),
+                "{}",
+                diverged.len()
+            );
+            for row in diverged {
+                let failed_at_s: f64 = row["failed_at_s"].parse().unwrap();
+                assert!((0.0..=6.0).contains(&failed_at_s));
+                assert_eq!(row["rmse_position"], "");
+                assert_eq!(row["episode_status"], "diverged");
+            }
+            for row in finite {
+                assert!(row["rmse_position"].parse::<f64>().unwrap().is_finite());
+            }
+            let counted: f64 = place.rows("out/summary.csv")[0]["diverged"]
+                .parse()
+                .unwrap();
+            let first = rows.iter().filter(|row| {
+                row["controller"] == "ftc"
+                    && row["agent"] == "0"
+                    && row["episode_status"] == "diverged"
+            });
+            assert_eq!(counted as usize, first.count());
+        }
+    }
+}
+
+#[test]
+fn a_replay_writes_its_trajectories_and_shows_the_numbers_of_the_run() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
+    let text = place.succeeds(&["replay", "out", "--episode", "2", "--controller", "pid"]);
+    let rows = place.rows("out/channels.csv");
+    let row = rows
+        .iter()
+        .find(|row| row["episode"] == "2" && row["controller"] == "pid" && row["channel"] == "x");
+    let rmse: f64 = row.unwrap()["rmse"].parse().unwrap();
+    let shown = text
+        .lines()
+        .find(|line| line.starts_with("    x "))
+        .unwrap();
+    assert!(
+        shown.contains(&format!("{rmse:.5}")),
+        "{rmse} is missing from: {shown}"
+    );
+    let written = fs::read(place.path("out/replay-2-pid.parquet")).unwrap();
+    assert!(written.starts_with(b"PAR1") && written.ends_with(b"PAR1"));
+}
+
+#[test]
+fn the_schema_knows_every_key_of_every_shipped_campaign() {
+    fn all_keys(value: &toml::Value, keys: &mut Vec<String>) {
+        match value {
+            toml::Value::Table(table) => {
+                for (key, value) in table {
+                    keys.push(key.clone());
+                    all_keys(value, keys);
+                }
+            }
+            toml::Value::Array(list) => list.iter().for_each(|value| all_keys(value, keys)),
+            _ => {}
+        }
+    }
+    let place = Place::smoke(&[]);
+    let schema = place.json(&["schema"]);
+    assert_eq!(schema["additionalProperties"], false);
+    for key in [
+        "name", "seed", "episodes", "time", "agent", "fault", "require",
+    ] {
+        assert!(
+            schema["properties"][key]["description"].is_string(),
+            "{key}"
+        );
+    }
+    let text = schema.to_string();
+    let mut keys = Vec::new();
+    for entry in fs::read_dir(repository("campaigns")).unwrap() {
+        let campaign = fs::read_to_string(entry.unwrap().path()).unwrap();
+        all_keys(&toml::from_str(&campaign).unwrap(), &mut keys);
+    }
+    assert!(keys.len() > 100);
+    for key in keys {
+        assert!(
+            text.contains(&format!("\"{key}\":{{")),
+            "{key} is not in the schema"
+        );
+    }
+}

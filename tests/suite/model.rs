@@ -1,0 +1,573 @@
+//! The pieces of the episode loop: lanes, random numbers, order of the integration, limits, noise.
+
+use crate::common::{altered, campaign, fly};
+use urts_mc::backend::cpu::{Cpu, Precision, Simd};
+use urts_mc::campaign::Campaign;
+use urts_mc::draw::draw;
+use urts_mc::gains::GainSet;
+use urts_mc::model::lanes::{Kernel, Lane, MAX_WIDTH};
+
+/// Work on lanes, with the instructions they need.
+struct Apply<L, F>(F, std::marker::PhantomData<L>);
+
+impl<L: Lane, F: FnOnce()> Kernel for Apply<L, F> {
+    type Output = ();
+    fn run(self) {
+        (self.0)();
+    }
+}
+
+/// Values of a function of one argument on lanes of type `L`.
+fn on_lanes<L: Lane>(arguments: &[f64], function: impl Fn(L) -> L) -> Vec<f64> {
+    let mut values = Vec::new();
+    for chunk in arguments.chunks(MAX_WIDTH) {
+        let mut padded = [chunk[0]; MAX_WIDTH];
+        padded[..chunk.len()].copy_from_slice(chunk);
+        for part in padded.chunks(L::WIDTH) {
+            let mut stored = [0.0; MAX_WIDTH];
+            function(L::load(part)).store(&mut stored);
+            values.extend(&stored[..L::WIDTH]);
+        }
+        values.truncate(values.len() - MAX_WIDTH + chunk.len());
+    }
+    values
+}
+
+/// Runs a generic check on every lane type that this processor has.
+macro_rules! on_every_lane {
+    ($check:ident) => {
+        $check::<f64>();
+        $check::<f32>();
+        #[cfg(target_arch = "x86_64")]
+        {
+            if Simd::Avx2.is_available() {
+                urts_mc::model::simd::F32x8::dispatch(Apply::<urts_mc::model::simd::F32x8, _>(
+                    $check::<urts_mc::model::simd::F32x8>,
+                    std::marker::PhantomData,
+                ));
+            }
+            if Simd::Avx512.is_available() {
+                urts_mc::model::simd::F32x16::dispatch(Apply::<urts_mc::model::simd::F32x16, _>(
+                    $check::<urts_mc::model::simd::F32x16>,
+                    std::marker::PhantomData,
+                ));
+            }
+        }
+    };
+}
+
+fn grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|k| f64::from((low + (high - low) * k as f64 / (count - 1) as f64) as f32))
+        .collect()
+}
+
+fn close(
+    name: &str,
+    arguments: &[f64],
+    ours: &[f64],
+    expected: impl Fn(f64) -> f64,
+    tolerance: f64,
+) {
+    assert_eq!(arguments.len(), ours.len());
+    for (x, y) in arguments.iter().zip(ours) {
+        let difference = (y - expected(*x)).abs();
+        assert!(
+            difference <= tolerance,
+            "{name}({x}) = {y}, off by {difference:e} > {tolerance:e}"
+        );
+    }
+}
+
+/// Two units in the last place of a single near one.
+const SINGLE_TOL: f64 = 2.5e-7;
+
+fn elementary_functions<L: Lane>() {
+    let angles = grid(-7.0, 7.0, 2001);
+    // The reduction by two parts of pi is good to a few turns, 1 ulp of the angle.
+    close(
+        "sin",
+        &angles,
+        &on_lanes::<L>(&angles, |x| x.sin_cos().0),
+        f64::sin,
+        2.0 * SINGLE_TOL,
+    );
+    close(
+        "cos",
+        &angles,
+        &on_lanes::<L>(&angles, |x| x.sin_cos().1),
+        f64::cos,
+        2.0 * SINGLE_TOL,
+    );
+    let wide = grid(-12.0, 12.0, 2001);
+    // Beyond 7.9 the value is 1, from which tanh is still 2.7e-7 away.
+    close(
+        "tanh",
+        &wide,
+        &on_lanes::<L>(&wide, Lane::tanh),
+        f64::tanh,
+        2.8e-7,
+    );
+    // The angle itself reaches pi: 2 ulp of it.
+    for x in [-2.0, -1.0, -1e-3, 0.0, 1e-3, 0.7, 3.0] {
+        let ours = on_lanes::<L>(&wide, |y| y.atan2(L::number(x)));
+        close(
+            "atan2",
+            &wide,
+            &ours,
+            |y| y.atan2(f64::from(x as f32)),
+            3.0 * SINGLE_TOL,
+        );
+    }
+    assert_eq!(on_lanes::<L>(&[0.0], |y| y.atan2(L::number(0.0))), [0.0]);
+    let positive = grid(1e-7, 40.0, 2001);
+    // ln reaches 16 in size; the error is relative to that.
+    close(
+        "ln",
+        &positive,
+        &on_lanes::<L>(&positive, Lane::ln),
+        f64::ln,
+        16.0 * SINGLE_TOL,
+    );
+    let near_one = grid(0.9, 1.1, 501);
+    close(
+        "ln",
+        &near_one,
+        &on_lanes::<L>(&near_one, Lane::ln),
+        f64::ln,
+        SINGLE_TOL,
+    );
+}
+
+#[test]
+fn val_elementary_functions_agree_with_the_standard_library_on_every_lane_type() {
+    on_every_lane!(elementary_functions);
+}
+
+fn phases<L: Lane>() {
+    let turns = [
+        0.0,
+        0.1,
+        0.25,
+        0.3,
+        0.49,
+        0.5,
+        0.51,
+        0.75,
+        0.99,
+        7.3,
+        -0.2,
+        1.0 - 1e-17,
+        123_456.75,
+        -3.0,
+        0.125,
+        0.875,
+    ];
+    let steps = [0.001_234_5; MAX_WIDTH];
+    for part in 0..MAX_WIDTH / L::WIDTH {
+        let lanes = &turns[part * L::WIDTH..];
+        let mut phase = L::turns(lanes);
+        for _ in 0..1000 {
+            phase = L::turns_add(phase, L::turns(&steps));
+        }
+        let mut stored = [0.0; MAX_WIDTH];
+        L::turns_sin(phase).store(&mut stored);
+        for (start, sine) in lanes.iter().zip(&stored[..L::WIDTH]) {
+            let exact = ((start + 1.2345) * std::f64::consts::TAU).sin();
+            // A thousand steps, each rounded to half of 2^-32 turns, are off by at most 7.3e-7 rad.
+            assert!(
+                (sine - exact).abs() < 7.3e-7 + SINGLE_TOL,
+                "{start}: {sine} against {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn val_phases_count_exactly_and_give_the_sine() {
+    on_every_lane!(phases);
+}
+
+fn selections<L: Lane>() {
+    let select = |left: f64, right: f64| {
+        on_lanes::<L>(&[left], |left| {
+            L::select_le(left, L::number(right), L::number(1.0), L::number(2.0))
+        })[0]
+    };
+    assert_eq!(
+        [
+            select(1.0, 2.0),
+            select(2.0, 2.0),
+            select(3.0, 2.0),
+            select(f64::NAN, 2.0)
+        ],
+        [1.0, 1.0, 2.0, 2.0]
+    );
+    let words = [
+        0,
+        u32::MAX,
+        0x8000_0000,
+        255,
+        256,
+        1,
+        2,
+        3,
+        4,
+        5,
+        6,
+        7,
+        8,
+        9,
+        10,
+        11,
+    ];
+    for part in words.chunks(L::WIDTH) {
+        let mut stored = [0.0; MAX_WIDTH];
+        L::unit_from_words(part).store(&mut stored);
+        for (word, unit) in part.iter().zip(stored) {
+            assert_eq!(unit, (f64::from(word >> 9) + 0.5) / 8_388_608.0);
+        }
+    }
+}
+
+#[test]
+fn a_comparison_with_nan_selects_the_failure_and_words_map_into_the_open_unit_interval() {
+    on_every_lane!(selections);
+}
+
+/// The largest |e| difference at the end of a smooth episode between two steps.
+fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {
+    let end = |campaign: &Campaign| {
+        let gains = GainSet::obtain(campaign).unwrap();
+        let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+        let (_, snapshots) = cpu.trace(0, 0, campaign.time.steps);
+        let last = snapshots.last().unwrap();
+        assert_eq!(last.step, campaign.time.steps);
+        last.agents
+            .iter()
+            .flatten()
+            .map(|shown| shown.e)
+            .collect::<Vec<_>>()
+    };
+    end(coarse)
+        .iter()
+        .zip(end(fine))
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_integration_is_of_fourth_order_on_a_smooth_episode_and_faults_on_the_step_grid_keep_it() {
+    for (name, changes) in [
+        (
+            "scenario-a",
+            vec![("duration_s = 20.0", "duration_s = 4.0")],
+        ),
+        (
+            "scenario-b",
+            vec![
+                ("duration_s = 20.0", "duration_s = 4.0"),
+                ("onset_s = 8.0", "onset_s = 1.0"),
+                ("onset_s = 12.0", "onset_s = 2.0"),
+            ],
+        ),
+    ] {
+        let with_step = |step: &str| {
+            let mut all = changes.clone();
+            all.push(("step_s = 0.001", step));
+            altered(name, &all)
+        };
+        let fine = with_step("step_s = 0.0005");
+        let errors = ["step_s = 0.008", "step_s = 0.004"]
+            .map(|step| end_difference(&with_step(step), &fine));
+        let order = (errors[0] / errors[1]).log2();
+        println!(
+            "{name}: errors {:.2e} {:.2e}, order {order:.2}",
+            errors[0], errors[1]
+        );
+        // Between steps of 8 and 4 ms the fifth-order terms still show.
+        assert!((3.7..4.8).contains(&order), "{name}: order {order}");
+    }
+}
+
+#[test]
+fn limits_cut_the_command_and_are_counted() {
+    // A torque limit far below what the initial error demands, and a thrust limit below the weight of 19.6 N.
+    let limited = altered(
+        "scenario-b",
+        &[
+            (
+                "actuation = \"thrust\"",
+                "actuation = \"thrust\"\nmax_torque_n_m = 2.0\nmax_thrust_n = 15.0",
+            ),
+            ("duration_s = 20.0", "duration_s = 13.0"),
+        ],
+    );
+    let free = altered("scenario-b", &[("duration_s = 20.0", "duration_s = 13.0")]);
+    for precision in [Precision::F64, Precision::F32] {
+        let channels = |campaign: &Campaign| {
+            fly(campaign, precision).remove(0).outcomes[0][0]
+                .channels
+                .clone()
+        };
+        let (limited, free) = (channels(&limited), channels(&free));
+        for axis in 3..6 {
+            // The bias fault of 0.3 N m adds to the limited pitch torque.
+            let most = if axis == 4 { 2.0 + 0.3 } else { 2.0 };
+            assert!(
+                limited[axis].u_max <= most + 1e-6,
+                "torque {} above its limit",
+                limited[axis].u_max
+            );
+            assert!(limited[axis].saturated_fraction > 0.0);
+            assert!(free[axis].u_max > 2.0 && free[axis].saturated_fraction == 0.0);
+        }
+        // Too little thrust to carry the weight: cut at nearly every step, and the UAV falls.
+        assert!(
+            limited[2].saturated_fraction > 0.9,
+            "{}",
+            limited[2].saturated_fraction
+        );
+        assert!(limited[2].max_abs > 10.0);
+        assert!(free[2].saturated_fraction == 0.0 && free[2].max_abs < 0.5);
+    }
+}
+
+#[test]
+fn the_observer_is_told_of_the_limits() {
+    // With nothing but an initial error, f1 = e'' - u_fb,eff stays small only if the told command is the limited one.
+    let quiet = |limit: &str| {
+        altered(
+            "scenario-b",
+            &[
+                (
+                    "actuation = \"thrust\"",
+                    &format!("actuation = \"thrust\"\nmax_torque_n_m = {limit}"),
+                ),
+                ("duration_s = 20.0", "duration_s = 14.0"),
+                ("magnitude = 0.2", "magnitude = 0.0"),
+                ("magnitude = 0.3", "magnitude = 0.0"),
+                (
+                    "amplitude = [2.0, 2.0, 2.0, 0.2, 0.2, 0.2]",
+                    "amplitude = 0.0",
+                ),
+                (
+                    "amplitude = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]",
+                    "amplitude = 0.0",
+                ),
+                ("amplitude = 0.1\nperiod_s", "amplitude = 0.0\nperiod_s"),
+                ("kappa = 0.05", "kappa = 0.0"),
+            ],
+        )
+    };
+    let campaign = quiet("3.0");
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
+    let (outcomes, snapshots) = cpu.trace(0, 0, 10);
+    assert!(
+        outcomes[0].channels[3].saturated_fraction > 0.0,
+        "the limit must bite"
+    );
+    let largest = snapshots
+        .iter()
+        .flat_map(|s| s.agents[0][3..].iter().map(|c| c.f1.abs()))
+        .fold(0.0, f64::max);
+    // What is left of f1 is the gyroscopic and damping difference of (14), a few hundredths; a limit unknown to the observer
+    // would show as several rad/s^2.
+    assert!(largest < 0.5, "f1 reaches {largest}");
+}
+
+#[test]
+fn noise_is_standard_normal_white_and_held_over_a_step() {
+    let text = [
+        (
+            "kind = \"smoothed-square\"\namplitude = 0.5\nperiod_s = 10.0\nsmoothing = 0.1",
+            "kind = \"noise\"\nstd = 1.0",
+        ),
+        ("duration_s = 20.0", "duration_s = 4.0"),
+    ];
+    let campaign = altered("scenario-a", &text);
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let trace = |precision, simd| {
+        Cpu::new(&campaign, &gains.loops(), precision, simd)
+            .trace(0, 1, 1)
+            .1
+    };
+    let snapshots = trace(Precision::F64, None);
+    let series: Vec<Vec<f64>> = (0..18)
+        .map(|k| {
+            snapshots[..4000]
+                .iter()
+                .map(|snapshot| snapshot.agents[k / 6][k % 6].f2)
+                .collect()
+        })
+        .collect();
+    let all: Vec<f64> = series.concat();
+    let n = all.len() as f64;
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n;
+    // 72,000 samples: five standard errors of each moment.
+    let moments = [1, 2, 3, 4].map(|power| mean(&mut all.iter().map(|x| x.powi(power))));
+    for (moment, expected, spread) in [
+        (moments[0], 0.0, 1.0),
+        (moments[1], 1.0, 2.0),
+        (moments[2], 0.0, 15.0),
+        (moments[3], 3.0, 96.0_f64),
+    ] {
+        assert!(
+            (moment - expected).abs() < 5.0 * (spread / n).sqrt(),
+            "moments {moments:?}"
+        );
+    }
+    let product =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>() / a.len() as f64;
+    let bound = 5.0 / 4000f64.sqrt();
+    for (k, own) in series.iter().enumerate() {
+        for lag in 1..9 {
+            assert!(
+                product(&own[lag..], &own[..4000 - lag]).abs() < bound,
+                "channel {k} repeats after {lag} steps"
+            );
+        }
+        for other in &series[k + 1..] {
+            assert!(
+                product(own, other).abs() < bound,
+                "two channels share noise"
+            );
+        }
+    }
+    // The same words in single precision.
+    for simd in Simd::ALL.into_iter().filter(|simd| simd.is_available()) {
+        let single = trace(Precision::F32, Some(simd));
+        for (double, single) in snapshots.iter().zip(&single) {
+            for (double, single) in double
+                .agents
+                .iter()
+                .flatten()
+                .zip(single.agents.iter().flatten())
+            {
+                // 23-bit uniforms are exact in both; ln, sqrt and sin are good to a few ulp of at most 5.8.
+                assert!(
+                    (double.f2 - single.f2).abs() < 1e-5,
+                    "{} against {}",
+                    double.f2,
+                    single.f2
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn draws_follow_their_distributions_and_who_shares_them() {
+    let campaign = altered(
+        "uav-paper",
+        &[
+            (
+                "error_integral = 0.0",
+                "error_integral = { log_uniform = [0.01, 1.0], per = \"agent\" }",
+            ),
+            (
+                "inertia_scale = { uniform = [0.8, 1.2] }",
+                "inertia_scale = { truncated_normal = { mean = 1.0, std = 0.2, low = 0.9, high = 1.3 }, per = \"agent\" }",
+            ),
+        ],
+    );
+    let episodes: Vec<_> = (0..2000).map(|episode| draw(&campaign, episode)).collect();
+    let n = episodes.len() as f64;
+    let mean =
+        |pick: &dyn Fn(&urts_mc::draw::Episode) -> f64| episodes.iter().map(pick).sum::<f64>() / n;
+    let near = |found: f64, expected: f64, std: f64| {
+        assert!(
+            (found - expected).abs() < 5.0 * std / n.sqrt(),
+            "{found} against {expected}"
+        )
+    };
+    // Uniform [0.8, 1.2]: mean 1, standard deviation 0.4 / sqrt 12; once per episode.
+    near(mean(&|e| e.agents[0].mass_scale), 1.0, 0.4 / 12f64.sqrt());
+    assert!(episodes.iter().all(|e| {
+        e.agents
+            .iter()
+            .all(|a| a.mass_scale == e.agents[0].mass_scale)
+    }));
+    near(mean(&|e| e.agents[0].kappa), 0.5, 0.5);
+    near(mean(&|e| e.agents[2].error[4]), 0.0, 0.1);
+    near(
+        mean(&|e| e.agents[2].error[4].powi(2)),
+        0.01,
+        0.01 * 2f64.sqrt(),
+    );
+    // ln of a log-uniform number is uniform.
+    near(
+        mean(&|e| e.agents[1].error_integral[3].ln()),
+        0.1f64.ln(),
+        100f64.ln() / 12f64.sqrt(),
+    );
+    assert!(episodes.iter().all(|e| {
+        e.agents[1]
+            .error_integral
+            .iter()
+            .all(|v| *v == e.agents[1].error_integral[0])
+    }));
+    assert!(episodes[0].agents[0].error_integral != episodes[0].agents[1].error_integral);
+    assert!(episodes.iter().all(|e| {
+        e.agents
+            .iter()
+            .all(|a| (0.9..=1.3).contains(&a.inertia_scale))
+    }));
+    // The loss strikes a quarter of the agents, one channel of six.
+    near(
+        mean(&|e| f64::from(u8::from(e.agents[0].faults[0].occurs()))),
+        0.25,
+        0.25f64.sqrt() * 0.75f64.sqrt(),
+    );
+    for channel in 0..6 {
+        near(
+            mean(&|e| f64::from(u8::from(e.agents[0].faults[0].strikes[channel]))),
+            0.25 / 6.0,
+            (0.25f64 / 6.0).sqrt(),
+        );
+    }
+    assert!(
+        episodes
+            .iter()
+            .all(|e| e.agents[0].faults[0].strikes.iter().filter(|s| **s).count() <= 1)
+    );
+}
+
+#[test]
+fn an_unused_coupling_and_absent_faults_change_nothing() {
+    // A loss of nothing, a disturbance of nothing and a coupling of nothing must not change a bit.
+    let base = altered(
+        "smoke",
+        &[
+            ("kappa = { choice = [0.0, 1.0] }", "kappa = 0.0"),
+            ("magnitude = { uniform = [0.1, 0.5] }", "magnitude = 0.0"),
+        ],
+    );
+    let mut bare = base.clone();
+    bare.faults.remove(0);
+    let outcomes = |campaign: &Campaign| {
+        fly(campaign, Precision::F32)
+            .into_iter()
+            .map(|flown| flown.outcomes)
+            .collect::<Vec<_>>()
+    };
+    let metrics = |campaign: &Campaign| {
+        outcomes(campaign)
+            .concat()
+            .concat()
+            .into_iter()
+            .flat_map(|agent| agent.channels)
+            .map(|c| (c.rmse, c.max_abs, c.effort))
+            .collect::<Vec<_>>()
+    };
+    // The sensor fault is fault 1 in one campaign and fault 0 in the other, so it would be drawn anew: silence it.
+    let silent = |mut campaign: Campaign| {
+        campaign
+            .faults
+            .retain(|fault| fault.kind != urts_mc::campaign::FaultKind::SmoothedSquare);
+        campaign
+    };
+    assert_eq!(metrics(&silent(base)), metrics(&silent(bare)));
+    assert_eq!(campaign("smoke").faults.len(), 2);
+}
