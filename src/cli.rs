@@ -12,7 +12,6 @@ use std::time::Duration;
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::gains::{GainSet, GainsError};
-use urts_mc::manifest::campaign_hash;
 use urts_mc::output::{OutputDir, OutputError};
 use urts_mc::replay::{ReplayError, replay};
 use urts_mc::run::{RunError, Settings, run};
@@ -114,9 +113,9 @@ struct ReplayArguments {
     /// The controller
     #[arg(long, default_value = "ftc")]
     controller: String,
-    /// Seconds between samples
-    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
-    interval: f64,
+    /// Seconds between samples, a multiple of the step [default: 0.01, or as near as the step allows]
+    #[arg(long, allow_negative_numbers = true)]
+    interval: Option<f64>,
     /// The Parquet file to write [default: <run>/replay-<episode>-<controller>.parquet]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -288,7 +287,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("reports").join(&campaign.name));
-    let out = OutputDir::claim(&path, &campaign_hash(&campaign), arguments.overwrite)?;
+    let out = OutputDir::claim(&path, &campaign, arguments.overwrite)?;
 
     let progress = progress_bar(campaign.episodes);
     let findings = run(&campaign, settings, &out, arguments.csv, &|episodes| {

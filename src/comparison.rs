@@ -45,11 +45,7 @@ impl FailureRate {
     /// Share of the episodes that failed; 0 of none.
     #[must_use]
     pub fn rate(&self) -> f64 {
-        if self.n == 0 {
-            0.0
-        } else {
-            self.failed() as f64 / self.n as f64
-        }
+        self.failed() as f64 / self.n.max(1) as f64
     }
 }
 
@@ -241,15 +237,15 @@ pub fn summary_table(rows: &[MetricQuantiles]) -> Table {
     } in rows
     {
         let mut row = table.row();
-        row.name(|| "controller".into(), failures.controller.clone())
-            .name(|| "stratum".into(), failures.stratum.clone())
+        row.name(|| "controller".into(), failures.controller.as_str().into())
+            .name(|| "stratum".into(), failures.stratum.as_str().into())
             .word(|| "metric".into(), metric)
             .word(|| "group".into(), group)
-            .real(|| "n".into(), failures.n as f64)
-            .real(|| "failed".into(), failures.failed() as f64)
-            .real(|| "exceeded".into(), failures.exceeded as f64)
-            .real(|| "diverged".into(), failures.diverged as f64)
-            .real(|| "failure_rate".into(), failures.rate())
+            .count(|| "n".into(), failures.n)
+            .count(|| "failed".into(), failures.failed())
+            .count(|| "exceeded".into(), failures.exceeded)
+            .count(|| "diverged".into(), failures.diverged)
+            .real_if("failure_rate", (failures.n > 0).then(|| failures.rate()))
             .real(|| "failure_rate_wilson_lower".into(), failures.wilson.lower)
             .real(|| "failure_rate_wilson_upper".into(), failures.wilson.upper)
             .real(|| "failure_rate_upper_95".into(), failures.upper_95);
@@ -276,16 +272,16 @@ pub fn comparison_table(comparisons: &[PairedComparison]) -> Table {
     for comparison in comparisons {
         for ratio in &comparison.ratios {
             let failures = &comparison.failures;
-            let [only_a, only_b, both] = ratio.diverged.map(|count| count as f64);
+            let [only_a, only_b, both] = ratio.diverged;
             let mut row = table.row();
-            row.name(|| "a".into(), comparison.a.clone())
-                .name(|| "b".into(), comparison.b.clone())
+            row.name(|| "a".into(), comparison.a.as_str().into())
+                .name(|| "b".into(), comparison.b.as_str().into())
                 .word(|| "scope".into(), ratio.scope)
                 .word(|| "name".into(), ratio.name)
-                .real(|| "both_failed".into(), failures.both as f64)
-                .real(|| "only_a_failed".into(), failures.only_a as f64)
-                .real(|| "only_b_failed".into(), failures.only_b as f64)
-                .real(|| "neither_failed".into(), failures.neither as f64)
+                .count(|| "both_failed".into(), failures.both)
+                .count(|| "only_a_failed".into(), failures.only_a)
+                .count(|| "only_b_failed".into(), failures.only_b)
+                .count(|| "neither_failed".into(), failures.neither)
                 .real(|| "mcnemar_mid_p".into(), comparison.mid_p);
             estimate(
                 &mut row,
@@ -298,9 +294,9 @@ pub fn comparison_table(comparisons: &[PairedComparison]) -> Table {
             });
             estimate(&mut row, "ratio", ratio.log_ratio, f64::exp);
             estimate(&mut row, "win_rate", ratio.win_rate, |rate| rate);
-            row.real(|| "only_a_diverged".into(), only_a)
-                .real(|| "only_b_diverged".into(), only_b)
-                .real(|| "both_diverged".into(), both);
+            row.count(|| "only_a_diverged".into(), only_a)
+                .count(|| "only_b_diverged".into(), only_b)
+                .count(|| "both_diverged".into(), both);
         }
     }
     table
@@ -425,7 +421,8 @@ fn ratio(
                     let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
                         (sum + log_ratio_of(of_a, of_b), count + 1.0)
                     });
-                    sum / count
+                    // One perfect channel each: neither is better.
+                    if sum.is_nan() { 0.0 } else { sum / count }
                 }
             };
             match log_ratio.total_cmp(&0.0) {

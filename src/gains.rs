@@ -1,6 +1,6 @@
 //! The gains that fly: synthesized, or from a file and verified the same way; and gains.json.
 
-use crate::campaign::{Campaign, CampaignError, FTC, PID, PID_TUNED};
+use crate::campaign::{ActuationKind, Campaign, CampaignError, Drawn, FTC, PID, PID_TUNED};
 use crate::synthesis::{
     Certificate, ChannelDesign, ChannelSynthesis, Check, ControllerGains, LoopAnalysis, LoopGains,
     SolverReport, SynthesisError, loop_gains, poles, synthesize, verify,
@@ -228,36 +228,62 @@ impl GainSet {
     /// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
     fn check_step(&self, campaign: &Campaign) -> Result<(), CampaignError> {
         let step_s = campaign.time.step_s;
-        let worst = self
-            .controllers
-            .iter()
-            .flat_map(|controller| {
-                controller
-                    .channels
-                    .iter()
-                    .map(move |channel| (controller, channel))
-            })
-            .flat_map(|(controller, channel)| {
-                poles(&channel.loop_gains)
-                    .into_iter()
-                    .map(move |pole| (controller, pole))
-            })
-            .map(|(controller, pole)| (longest_stable_step(pole), controller, pole))
+        let of_controllers = self.controllers.iter().flat_map(|controller| {
+            let poles = controller
+                .channels
+                .iter()
+                .flat_map(|channel| poles(&channel.loop_gains));
+            poles.map(move |pole| (pole, format!("{:?}", controller.name)))
+        });
+        let of_plant = plant_poles(campaign)
+            .into_iter()
+            .map(|(pole, of)| (Complex::new(pole, 0.0), of.to_string()));
+        let worst = of_controllers
+            .chain(of_plant)
+            .map(|(pole, of)| (longest_stable_step(pole), of, pole))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         match worst {
-            Some((limit_s, controller, pole)) if step_s > limit_s => Err(CampaignError::Invalid {
+            Some((limit_s, of, pole)) if step_s > limit_s => Err(CampaignError::Invalid {
                 path: campaign.path.clone(),
                 key: "time.step_s".into(),
                 value: step_s.to_string(),
                 limit: format!(
-                    "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {:?}",
-                    pole.re, pole.im, controller.name
+                    "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {of}",
+                    pole.re, pole.im
                 ),
                 remedy: format!("use {:.1e} or less", limit_s / 2.0),
             }),
             _ => Ok(()),
         }
     }
+}
+
+/// The poles of what is not a controller: damping of the lightest plant, and the command filter.
+fn plant_poles(campaign: &Campaign) -> [(f64, &'static str); 3] {
+    let uav = &campaign.uav;
+    let least = |scale: &Drawn| {
+        let lows = scale
+            .distributions
+            .iter()
+            .map(|distribution| distribution.support().0);
+        lows.fold(f64::INFINITY, f64::min)
+    };
+    let smallest_inertia = uav.inertia_kg_m2.into_iter().fold(f64::INFINITY, f64::min);
+    let filter = match uav.actuation {
+        ActuationKind::Full => 0.0,
+        ActuationKind::Thrust => -uav.command_filter_rad_s,
+    };
+    [
+        (
+            -uav.drag_n_s_m / (uav.mass_kg * least(&campaign.mass_scale)),
+            "the drag",
+        ),
+        (
+            -uav.angular_drag_n_m_s / (smallest_inertia * least(&campaign.inertia_scale)),
+            "the angular drag",
+        ),
+        (filter, "the command filter"),
+    ]
 }
 
 /// A value as JSON; these types have string keys and finite numbers, which always can be.

@@ -1,6 +1,7 @@
 //! The directory of a run: who may write there, and files that appear whole or not at all.
 
-use crate::manifest::Manifest;
+use crate::campaign::Campaign;
+use crate::manifest::{Manifest, campaign_hash};
 use crate::tables::Table;
 use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
 use std::fs::{self, File};
@@ -63,12 +64,12 @@ impl OutputError {
 pub struct OutputDir(PathBuf);
 
 impl OutputDir {
-    /// Claims a directory before any work is done. It may be absent, empty, or hold a run of the same campaign text;
-    /// anything else is refused unless `overwrite`.
+    /// Claims a directory before any work is done. It may be absent, empty, hold a run of the same campaign text and seed
+    /// with no more episodes, or what is left of an unfinished run; anything else is refused unless `overwrite`.
     ///
     /// # Errors
     /// If the directory holds something else or cannot be written. Nothing is left behind then.
-    pub fn claim(path: &Path, campaign_hash: &str, overwrite: bool) -> Result<Self, OutputError> {
+    pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
         let taken = |what: String| OutputError::Taken {
             path: path.to_path_buf(),
             what,
@@ -84,13 +85,20 @@ impl OutputDir {
             path.is_dir() && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
         if occupied && !overwrite {
             match Manifest::read(path) {
-                Ok(manifest) if manifest.campaign_blake3 == campaign_hash => {}
-                Ok(manifest) => {
+                Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
                     return Err(taken(format!(
                         "a run of another campaign text ({:?})",
-                        manifest.name
+                        run.name
                     )));
                 }
+                Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => {
+                    return Err(taken(format!(
+                        "a run of {} episodes with seed {}",
+                        run.episodes, run.seed
+                    )));
+                }
+                Ok(_) => {}
+                Err(_) if holds_only_ours(path) => {}
                 Err(_) => return Err(taken("files, but no finished run".into())),
             }
         }
@@ -170,11 +178,15 @@ impl OutputDir {
         };
         let mut frame = table.to_frame().map_err(broken)?;
         let mut encoded = Ok(());
-        self.write_with(name, |file| {
+        let written = self.write_with(name, |file| {
             encoded = encode(file, &mut frame);
-            Ok(())
-        })?;
-        encoded.map_err(broken)
+            match &encoded {
+                Ok(()) => Ok(()),
+                // Keeps the file from getting its final name; the encoder's own error is reported.
+                Err(_) => Err(ErrorKind::InvalidData.into()),
+            }
+        });
+        encoded.map_err(broken).and(written)
     }
 
     fn write_with(
@@ -223,4 +235,22 @@ impl OutputDir {
         }
         Ok(())
     }
+}
+
+/// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
+fn holds_only_ours(dir: &Path) -> bool {
+    let ours = |name: &str| {
+        let whole = name
+            .strip_prefix('.')
+            .and_then(|name| name.strip_suffix(".part"))
+            .unwrap_or(name);
+        let (stem, extension) = whole.rsplit_once('.').unwrap_or((whole, ""));
+        match extension {
+            "parquet" | "csv" => ["episodes", "channels", "summary", "comparison"].contains(&stem),
+            _ => whole == "gains.json",
+        }
+    };
+    let entries = fs::read_dir(dir).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.all(|name| ours(&name))
 }

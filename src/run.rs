@@ -152,6 +152,10 @@ pub fn run<'a>(
         ("summary", &summary_table, true),
         ("comparison", &comparison_table, true),
     ] {
+        // One controller has nothing to be compared with.
+        if table.is_empty() {
+            continue;
+        }
         out.write_parquet(&format!("{name}.parquet"), table)?;
         if with_csv {
             out.write_csv(&format!("{name}.csv"), table)?;

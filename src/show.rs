@@ -588,6 +588,12 @@ pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Pat
             );
         }
     }
+    if !replay.same_arithmetic {
+        line(
+            &mut text,
+            "flown in f64: this processor lacks the run's lanes, so digits beyond single precision differ",
+        );
+    }
     line(
         &mut text,
         &format!(

@@ -9,6 +9,7 @@ use polars::prelude::{
     Column, DataFrame, Float64Chunked, IntoColumn, NamedFrom, NewChunkedArray, PlSmallStr,
     PolarsError, Series,
 };
+use std::sync::Arc;
 
 /// How an agent or an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,9 +44,9 @@ pub struct Table {
 #[derive(Debug, Clone)]
 enum Values {
     Real(Vec<f64>),
-    Count(Vec<u32>),
+    Count(Vec<u64>),
     Word(Vec<&'static str>),
-    Name(Vec<String>),
+    Name(Vec<Arc<str>>),
     Flag(Vec<bool>),
 }
 
@@ -75,11 +76,11 @@ impl Row<'_> {
     cell!(/// A real number; not a number where it does not apply.
         real, Real, f64);
     cell!(/// A number of things.
-        count, Count, u32);
+        count, Count, u64);
     cell!(/// A word of a fixed list.
         word, Word, &'static str);
     cell!(/// A name.
-        name, Name, String);
+        name, Name, Arc<str>);
     cell!(/// Yes or no.
         flag, Flag, bool);
 
@@ -98,6 +99,12 @@ impl Table {
         }
     }
 
+    /// Whether no row was begun.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
     /// The finished table.
     ///
     /// # Errors
@@ -114,7 +121,10 @@ impl Table {
                 }
                 Values::Count(values) => Series::new(name, values).into_column(),
                 Values::Word(values) => Series::new(name, values).into_column(),
-                Values::Name(values) => Series::new(name, values).into_column(),
+                Values::Name(values) => {
+                    let names: Vec<&str> = values.iter().map(AsRef::as_ref).collect();
+                    Series::new(name, names).into_column()
+                }
                 Values::Flag(values) => Series::new(name, values).into_column(),
             }
         });
@@ -131,6 +141,8 @@ pub struct Tables {
     pub channels: Table,
     /// What the statistics read.
     pub scores: Scores,
+    /// Names of the controllers, shared by all rows.
+    names: Vec<Arc<str>>,
 }
 
 /// The numbers that the statistics of a run read. Episodes are in order; so are controllers, agents and channels.
@@ -154,6 +166,11 @@ impl Tables {
         Self {
             episodes: Table::default(),
             channels: Table::default(),
+            names: campaign
+                .controllers
+                .iter()
+                .map(|name| Arc::from(name.as_str()))
+                .collect(),
             scores: Scores {
                 status: vec![Vec::new(); controllers],
                 rmse: vec![Vec::new(); controllers],
@@ -169,9 +186,7 @@ impl Tables {
         for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
             occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
         }
-        for (controller, (name, outcomes)) in
-            campaign.controllers.iter().zip(&flown.outcomes).enumerate()
-        {
+        for (controller, (name, outcomes)) in self.names.iter().zip(&flown.outcomes).enumerate() {
             let agents: Vec<Judged<'_>> = outcomes
                 .iter()
                 .zip(draws)
@@ -183,9 +198,9 @@ impl Tables {
                 .max()
                 .unwrap_or(Status::Ok);
             self.scores.status[controller].push(worst);
-            for ((agent, judged), draw) in (0u32..).zip(&agents).zip(draws) {
+            for ((agent, judged), draw) in (0u64..).zip(&agents).zip(draws) {
                 let key = |row: &mut Row<'_>| {
-                    row.count(|| "episode".into(), flown.episode.index)
+                    row.count(|| "episode".into(), u64::from(flown.episode.index))
                         .name(|| "controller".into(), name.clone())
                         .count(|| "agent".into(), agent);
                 };
@@ -215,12 +230,14 @@ struct Judged<'a> {
 impl<'a> Judged<'a> {
     fn new(campaign: &Campaign, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
         let verdict = &campaign.verdict;
-        let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
-            metrics.max_abs > verdict.max_error[channel] || metrics.rmse > verdict.max_rmse[channel]
-        };
+        // max_error was judged step by step, in the precision of the loop.
+        let too_large =
+            |(channel, metrics): (usize, &ChannelOutcome)| metrics.rmse > verdict.max_rmse[channel];
         let status = if outcome.diverged {
             Status::Diverged
-        } else if outcome.channels.iter().enumerate().any(too_large) {
+        } else if outcome.failed_step.is_some()
+            || outcome.channels.iter().enumerate().any(too_large)
+        {
             Status::Exceeded
         } else {
             Status::Ok
@@ -268,9 +285,11 @@ impl<'a> Judged<'a> {
             .real_if("recovery_s", slowest(Self::recovery_s))
             .real(
                 || "saturated_fraction".into(),
-                all.iter()
-                    .map(|metrics| metrics.saturated_fraction)
-                    .fold(0.0, f64::max),
+                self.finite(
+                    all.iter()
+                        .map(|metrics| metrics.saturated_fraction)
+                        .fold(0.0, f64::max),
+                ),
             );
         write_draw(row, campaign, draw);
     }
@@ -291,7 +310,10 @@ impl<'a> Judged<'a> {
             .real_if("recovery_s", self.recovery_s(time, metrics))
             .real(|| "effort".into(), self.finite(metrics.effort))
             .real(|| "u_max".into(), self.finite(metrics.u_max))
-            .real(|| "saturated_fraction".into(), metrics.saturated_fraction)
+            .real(
+                || "saturated_fraction".into(),
+                self.finite(metrics.saturated_fraction),
+            )
             .real(|| "f1_rms_error".into(), self.finite(metrics.f1_rms_error))
             .real(|| "f2_rms_error".into(), self.finite(metrics.f2_rms_error));
     }
@@ -358,7 +380,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
         row.real(
             || format!("fault{index}_onset_s"),
             if drawn.occurs() {
-                drawn.onset_s
+                f64::from(campaign.time.onset_step(drawn.onset_s)) * campaign.time.step_s
             } else {
                 f64::NAN
             },

@@ -89,7 +89,7 @@ pub struct Flown {
 impl Cpu {
     /// Prepares a campaign: tabulates the references and rounds the gains; `gains` are those of each of the campaign's
     /// controllers on the position and the attitude channels. A layout that the processor lacks is replaced by the widest
-    /// it has; the second value says which is used (`None` in double precision).
+    /// it has; [`Cpu::simd`] says which is used.
     #[must_use]
     pub fn new(
         campaign: &Campaign,

@@ -18,17 +18,20 @@ pub(super) enum Bounds {
     Positive,
     /// From 0 to 1.
     Share,
+    /// From a smallest value on.
+    AtLeast(f64),
 }
 
 impl Bounds {
-    fn broken_by(self, low: f64, high: f64) -> Option<&'static str> {
-        match self {
-            Self::Any => None,
-            Self::NonNegative if low < 0.0 => Some("must not be negative"),
-            Self::Positive if low <= 0.0 => Some("must be positive"),
-            Self::Share if low < 0.0 || high > 1.0 => Some("must lie within [0, 1]"),
-            _ => None,
-        }
+    fn broken_by(self, low: f64, high: f64) -> Option<String> {
+        let limit = match self {
+            Self::NonNegative if low < 0.0 => "must not be negative".into(),
+            Self::Positive if low <= 0.0 => "must be positive".into(),
+            Self::Share if low < 0.0 || high > 1.0 => "must lie within [0, 1]".into(),
+            Self::AtLeast(least) if low < least => format!("must be at least {least:e}"),
+            _ => return None,
+        };
+        Some(limit)
     }
 }
 
@@ -112,7 +115,7 @@ impl Check<'_> {
         }
         match bounds.broken_by(value, value) {
             Some(limit) => {
-                Err(self.invalid(key, in_toml(value), limit, "give a value within the limit"))
+                Err(self.invalid(key, in_toml(value), &limit, "give a value within the limit"))
             }
             None => Ok(value),
         }
@@ -183,7 +186,10 @@ impl Check<'_> {
             for channel in 0..CHANNELS {
                 let (distribution, own_per) =
                     self.channel_value(&key, value, parameter, channel)?;
-                self.same_per(&key, &mut per, own_per)?;
+                // Whoever shares a constant, it is the same.
+                if !distribution.is_constant() {
+                    self.same_per(&key, &mut per, own_per)?;
+                }
                 drawn.distributions.push(distribution);
             }
         }
@@ -257,7 +263,7 @@ impl Check<'_> {
                 } else {
                     "give values within the limit"
                 };
-                Err(self.invalid(key, value, limit, remedy))
+                Err(self.invalid(key, value, &limit, remedy))
             }
             None => Ok((distribution, per)),
         }

@@ -40,7 +40,7 @@ impl FaultKind {
                     &[
                         required("amplitude", Bounds::Any),
                         required("period_s", Bounds::Positive),
-                        required("smoothing", Bounds::Positive),
+                        required("smoothing", Bounds::AtLeast(1e-6)),
                         PHASE,
                     ]
                 }

@@ -80,7 +80,42 @@ impl Campaign {
             path: path.to_path_buf(),
             source,
         })?;
-        Self::parse(&text, path)
+        let campaign = Self::parse(&text, path)?;
+        campaign.require_files()?;
+        Ok(campaign)
+    }
+
+    /// Refuses a campaign whose gains files are not there. A run's campaign is parsed again without this: its gains are in
+    /// the run's own directory.
+    fn require_files(&self) -> Result<(), CampaignError> {
+        let own = self
+            .synthesis
+            .gains
+            .iter()
+            .map(|path| ("synthesis.gains".to_string(), path));
+        let named = &self.synthesis.named;
+        let of_named = named.iter().map(|named| {
+            (
+                format!("synthesis.named.{}.gains", named.name),
+                &named.gains,
+            )
+        });
+        let check = check::Check {
+            path: &self.path,
+            text: &self.text,
+        };
+        match own.chain(of_named).find(|(_, path)| !path.is_file()) {
+            Some((key, path)) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                Err(check.invalid(
+                    key,
+                    format!("{name:?}"),
+                    "no such file",
+                    "name a gains.json, relative to the campaign",
+                ))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Checks the text of a campaign file; `path` is for messages and for the files that it names.

@@ -8,13 +8,18 @@ use super::check::{Bounds, CHANNELS, Check, Parameter};
 use super::error::CampaignError;
 use super::file::*;
 use super::{
-    Campaign, Disturbance, FIRST_ATTITUDE, Fault, FaultChannels, Initial, Requirement, Time, Uav,
-    Verdict,
+    Campaign, Distribution, Disturbance, Drawn, FIRST_ATTITUDE, Fault, FaultChannels, Initial,
+    Requirement, Time, Uav, Verdict,
 };
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
+/// How far a signal may turn in one step, rad; beyond it the method's stages no longer see its shape.
+const MAX_STEP_RAD: f64 = 0.5;
+/// Memory that the reference tables of a campaign may take, bytes.
+const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
 /// The channel whose actuator is the thrust where there is no other force.
 const THRUST: usize = FIRST_ATTITUDE - 1;
 /// The paper's UAV, section V.
@@ -48,6 +53,19 @@ pub(super) fn validate(
             team,
             "a team has 1 to 64 agents",
             "give the agents of one episode",
+        ));
+    }
+    let table_bytes = f64::from(2 * time.steps + 1) * (team * CHANNELS) as f64 * 32.0;
+    if table_bytes > MAX_TABLE_BYTES {
+        return Err(check.invalid(
+            "time.duration_s",
+            file.time.duration_s,
+            &format!(
+                "the references of {team} agents over {} steps would take {:.0} GiB",
+                time.steps,
+                table_bytes / 1_073_741_824.0
+            ),
+            "shorten it, take longer steps or a smaller team",
         ));
     }
     let uav = check.uav(&file.agent)?;
@@ -91,13 +109,13 @@ pub(super) fn validate(
             .disturbance
             .iter()
             .enumerate()
-            .map(|(index, disturbance)| check.disturbance(index, disturbance, team))
+            .map(|(index, disturbance)| check.disturbance(index, disturbance, team, time))
             .collect::<Result<_, _>>()?,
         faults: file
             .fault
             .iter()
             .enumerate()
-            .map(|(index, fault)| check.fault(index, fault, team, &file.time, uav.actuation))
+            .map(|(index, fault)| check.fault(index, fault, team, time, uav.actuation))
             .collect::<Result<_, _>>()?,
         verdict: check.verdict(&file.verdict.unwrap_or_default())?,
     })
@@ -298,6 +316,7 @@ impl Check<'_> {
         index: usize,
         file: &DisturbanceFile,
         team: usize,
+        time: Time,
     ) -> Result<Disturbance, CampaignError> {
         let table = format!("disturbance[{index}]");
         let parameters = self.parameters(
@@ -307,6 +326,10 @@ impl Check<'_> {
             file.kind.parameters(),
             team,
         )?;
+        if file.kind == DisturbanceKind::Sine {
+            let key = format!("{table}.frequency_rad_s");
+            self.resolved(&key, &parameters[1], |(_, high)| high, time)?;
+        }
         Ok(Disturbance {
             kind: file.kind,
             parameters,
@@ -318,7 +341,7 @@ impl Check<'_> {
         index: usize,
         file: &FaultFile,
         team: usize,
-        time: &TimeFile,
+        time: Time,
         actuation: ActuationKind,
     ) -> Result<Fault, CampaignError> {
         let table = format!("fault[{index}]");
@@ -345,12 +368,13 @@ impl Check<'_> {
             .map(|onset| onset.support().1)
             .fold(0.0, f64::max);
         if let Some(onset) = &file.onset_s
-            && last >= time.duration_s
+            && time.onset_step(last) >= time.steps
         {
+            let last_step_s = f64::from(time.steps - 1) * time.step_s;
             return Err(self.invalid(
                 onset_key,
                 onset,
-                &format!("a fault must begin before the end at {} s", time.duration_s),
+                &format!("a fault must begin before the end, by the last step at {last_step_s} s"),
                 "begin it earlier",
             ));
         }
@@ -370,6 +394,17 @@ impl Check<'_> {
                 "list some of [3, 4, 5, 6]: the thrust and three torques",
             ));
         }
+        let parameters = self.parameters(
+            &table,
+            file,
+            file.agents.as_deref(),
+            file.kind.parameters(),
+            team,
+        )?;
+        if file.kind == FaultKind::SmoothedSquare {
+            let key = format!("{table}.period_s");
+            self.resolved(&key, &parameters[1], |(low, _)| TAU / low, time)?;
+        }
         Ok(Fault {
             target: file.target,
             kind: file.kind,
@@ -380,14 +415,33 @@ impl Check<'_> {
             )?,
             channels,
             onset_s,
-            parameters: self.parameters(
-                &table,
-                file,
-                file.agents.as_deref(),
-                file.kind.parameters(),
-                team,
-            )?,
+            parameters,
         })
+    }
+
+    /// Refuses frequencies that a step cannot resolve: they would be seen as others.
+    fn resolved(
+        &self,
+        key: &str,
+        drawn: &Drawn,
+        fastest_rad_s: fn((f64, f64)) -> f64,
+        time: Time,
+    ) -> Result<(), CampaignError> {
+        let limit_rad_s = MAX_STEP_RAD / time.step_s;
+        let supports = drawn.distributions.iter().map(Distribution::support);
+        let fastest = supports.map(fastest_rad_s).fold(0.0, f64::max);
+        if fastest <= limit_rad_s {
+            return Ok(());
+        }
+        Err(self.invalid(
+            key,
+            format!("up to {fastest:.1} rad/s"),
+            &format!(
+                "steps of {} s resolve at most {limit_rad_s:.1} rad/s",
+                time.step_s
+            ),
+            "make it slower, or shorten time.step_s",
+        ))
     }
 
     fn fault_channels(

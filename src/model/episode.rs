@@ -298,7 +298,7 @@ impl<R: Real> Flight<'_, R> {
         for index in 0..campaign.faults.len() {
             self.add_fault(&mut signals, index, agent, first);
         }
-        let settled = signals.clone().at_start(
+        let first_sensor_fault = signals.clone().at_start(
             campaign.seed,
             &std::array::from_fn(|lane| self.lane_episode(lane).index),
         );
@@ -311,8 +311,12 @@ impl<R: Real> Flight<'_, R> {
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
             if campaign.initial.observer == ObserverStart::Measured {
-                state[OBSERVER..OBSERVER + 3]
-                    .copy_from_slice(&gains[c].measured(integral, error, rate, settled[c]));
+                state[OBSERVER..OBSERVER + 3].copy_from_slice(&gains[c].measured(
+                    integral,
+                    error,
+                    rate,
+                    first_sensor_fault[c],
+                ));
             }
             state
         });

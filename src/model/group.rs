@@ -17,6 +17,8 @@ use super::signal::Signals;
 
 /// Steps between two flushes of the metrics, counted from step 0.
 const FLUSH_STEPS: u32 = 256;
+/// Where an agent that diverged is seen by the others, m or rad.
+const FAR_AWAY: f64 = 1e15;
 
 /// Two numbers per agent that say how it ended, beside its channels' outcomes.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +88,7 @@ pub struct Shown {
     pub f2: f64,
     /// Its estimate.
     pub f2_hat: f64,
-    /// Command after limits and faults.
+    /// Command after faults: u of (9), and torques after their limits; under thrust, x, y and z are the force demanded.
     pub u: f64,
 }
 
@@ -135,7 +137,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         team: &[L; NC],
     ) -> Response<L, NC, NX> {
         let [position, velocity] = self.motion::<P, STAGE>(&setting.plant, rows);
-        let mut wanted = position;
+        let mut wanted = [L::number(0.0); NC];
         let mut force = self.signals.disturbance;
         for c in 0..NC {
             wanted[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
@@ -255,6 +257,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                 for c in 0..NC {
                     sum[c] = sum[c] + position[c];
                 }
+            }
+            // Finite, so that an agent that diverged leaves those alone to whom it is coupled with kappa = 0.
+            let (low, high) = (L::number(-FAR_AWAY), L::number(FAR_AWAY));
+            for c in 0..NC {
+                sum[c] = sum[c].min(high).max(low);
             }
         }
         sum

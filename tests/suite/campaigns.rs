@@ -2,7 +2,7 @@
 
 use crate::common::{altered, campaign, fly, repository, tables};
 use urts_mc::backend::cpu::Precision;
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Campaign, Distribution};
 use urts_mc::comparison::{compare, summarise};
 use urts_mc::gains::GainSet;
 use urts_mc::tables::Status;
@@ -230,4 +230,56 @@ fn a_fault_that_begins_later_splits_settling_from_recovery() {
     assert!(recovery > 0.0 && recovery < 5.0, "{recovery}");
     // Channel y is not hit: nothing to recover from.
     assert_eq!(value("recovery_s", 1), Some(0.0));
+}
+
+#[test]
+fn an_agent_that_diverges_leaves_those_alone_that_are_not_coupled_to_it() {
+    // A loss of all effectiveness makes the struck agents drift away without end; kappa is zero in every other episode.
+    let campaign = altered(
+        "smoke",
+        &[
+            (
+                "kappa = { choice = [0.0, 1.0] }",
+                "kappa = { choice = [0.0, 1e-9] }",
+            ),
+            ("probability = 0.25", "probability = 0.5"),
+            ("channels = \"one\"", "channels = \"all\""),
+            (
+                "magnitude = { uniform = [0.1, 0.5] }",
+                "magnitude = { uniform = [0.1, 0.5] }\n\n[[disturbance]]\nkind = \"constant\"\namplitude = 1e37",
+            ),
+        ],
+    );
+    let mut struck = campaign.clone();
+    struck.disturbances[1].parameters[0].distributions[6..].fill(Distribution::Constant(0.0));
+    let (mut diverged, mut spared) = (0, 0);
+    for flown in fly(&struck, Precision::F32) {
+        let kappa = flown.episode.agents[0].kappa;
+        for outcomes in flown.outcomes {
+            diverged += usize::from(outcomes[0].diverged);
+            if kappa == 0.0 {
+                assert!(!outcomes[1].diverged && !outcomes[2].diverged);
+                spared += 1;
+            }
+        }
+    }
+    assert!(
+        diverged > 0 && spared > 0,
+        "{diverged} diverged, {spared} spared"
+    );
+}
+
+#[test]
+fn a_perfect_pair_of_channels_is_a_tie_and_no_nan() {
+    let campaign = campaign("smoke");
+    let mut tables = tables(&campaign, Precision::F64);
+    // The first controller is perfect in one channel, the second in another.
+    tables.scores.rmse[0][0] = 0.0;
+    tables.scores.rmse[1][1] = 0.0;
+    for pair in compare(&campaign, &tables.scores) {
+        for ratio in pair.ratios {
+            let log_ratio = ratio.log_ratio.unwrap();
+            assert!(!log_ratio.value.is_nan() && !ratio.win_rate.unwrap().value.is_nan());
+        }
+    }
 }

@@ -6,7 +6,6 @@ use std::fs;
 use urts_mc::backend::cpu::{Cpu, Flown, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::gains::GainSet;
-use urts_mc::manifest::campaign_hash;
 use urts_mc::output::OutputDir;
 use urts_mc::replay::replay;
 use urts_mc::run::{Settings, run};
@@ -71,7 +70,7 @@ fn files(
     precision: Precision,
 ) -> Vec<(String, Vec<u8>)> {
     let dir = tempfile::tempdir().unwrap();
-    let out = OutputDir::claim(&dir.path().join("run"), &campaign_hash(campaign), false).unwrap();
+    let out = OutputDir::claim(&dir.path().join("run"), campaign, false).unwrap();
     run(
         campaign,
         Settings {
@@ -180,8 +179,7 @@ fn a_replayed_episode_has_the_metrics_of_its_row() {
     for precision in [Precision::F32, Precision::F64] {
         let campaign = everything();
         let dir = tempfile::tempdir().unwrap();
-        let out =
-            OutputDir::claim(&dir.path().join("run"), &campaign_hash(&campaign), false).unwrap();
+        let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
         run(
             &campaign,
             Settings {
@@ -196,7 +194,7 @@ fn a_replayed_episode_has_the_metrics_of_its_row() {
         .unwrap();
         let flown = fly(&campaign, None, 1, precision);
         for (episode, controller) in [(0, "ftc"), (21, "pid"), (36, "pid-tuned")] {
-            let replayed = replay(out.path(), episode, controller, 0.01).unwrap();
+            let replayed = replay(out.path(), episode, controller, None).unwrap();
             let index = campaign
                 .controllers
                 .iter()

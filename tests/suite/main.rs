@@ -25,6 +25,7 @@
     reason = "small counts"
 )]
 
+mod cli;
 mod common;
 
 mod campaigns;

@@ -5,7 +5,7 @@ use super::super::error::{CampaignError, nearest};
 use super::super::file::*;
 use super::super::{FTC, GainSource, NamedGains, PID, PID_TUNED, Uav};
 use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 impl Check<'_> {
     /// Where the gains come from.
@@ -41,19 +41,6 @@ impl Check<'_> {
             ));
         };
         let beside = |file: &str| self.path.parent().unwrap_or(Path::new("")).join(file);
-        let existing = |key: String, file: &str| -> Result<PathBuf, CampaignError> {
-            let path = beside(file);
-            if path.is_file() {
-                Ok(path)
-            } else {
-                Err(self.invalid(
-                    key,
-                    format!("{file:?}"),
-                    "no such file",
-                    "name a gains.json, relative to the campaign",
-                ))
-            }
-        };
         let mut named = Vec::new();
         for (name, entry) in &file.named {
             let key = format!("synthesis.named.{name}");
@@ -68,7 +55,7 @@ impl Check<'_> {
             }
             named.push(NamedGains {
                 name: name.clone(),
-                gains: existing(format!("{key}.gains"), &entry.gains)?,
+                gains: beside(&entry.gains),
                 controller: entry.controller.clone().unwrap_or_else(|| FTC.to_string()),
             });
         }
@@ -86,11 +73,7 @@ impl Check<'_> {
                 )?,
             ],
             preset,
-            gains: file
-                .gains
-                .as_deref()
-                .map(|gains| existing("synthesis.gains".into(), gains))
-                .transpose()?,
+            gains: file.gains.as_deref().map(beside),
             named,
         })
     }

@@ -94,7 +94,7 @@ mass_scale = { uniform = [0.8, 1.2] } => mass_scale = { normal = { mean = 1.0, s
 probability = 0.25 => probability = 1.25 :: fault[0].probability (line 54) = 1.25: must lie within [0, 1]; give a value within the limit
 probability = 0.25 => probability = -0.25 :: fault[0].probability (line 54) = -0.25: must lie within [0, 1]
 [0.1, 0.5]        => [0.1, 1.5]          :: fault[0].magnitude (line 57) = { uniform = [0.1, 1.5] }: must lie within [0, 1]
-smoothing = 0.1   => smoothing = 0       :: fault[1].smoothing (line 65) = 0.0: must be positive
+smoothing = 0.1   => smoothing = 0       :: fault[1].smoothing (line 65) = 0.0: must be at least 1e-6
 frequency_rad_s = { uniform = [1.0, 5.0] } => frequency_rad_s = [1, 1, 1, 1, -1, 1] :: disturbance[0].frequency_rad_s[4] (line 48) = -1.0: must not be negative
 episodes = 3      => episodes = 0        :: episodes (line 4) = 0: at least one episode must run; give a positive number
 team = 3          => team = 0            :: agent.team (line 14) = 0: a team has 1 to 64 agents
@@ -196,7 +196,7 @@ amplitude = [2.0, 1.5, 1.0, 0.1, 0.1, 0.3] => amplitude = [2.0] :: reference.amp
 error_integral = 0.0 => error_integral = [[0, 0], 0, 0, 0, 0, 0] :: initial.error_integral[0] (line 40) = [0.0, 0.0]: lists do not nest
 mass_scale = { uniform = [0.8, 1.2] } => mass_scale = [1.0, 1.0, 1.1] :: agent.mass_scale (line 16) = a list of 3 ~ not of its channels; give one
 mass_scale = { uniform = [0.8, 1.2] } => mass_scale = { uniform = [0.8, 1.2], per = "channel" } :: agent.mass_scale.per (line 16) = "channel" ~ use "episode" or "agent"
-error_integral = 0.0 => error_integral = [{ uniform = [0, 1], per = "agent" }, 0, 0, 0, 0, 0] :: initial.error_integral ~ share one `per` ~ write the same
+error_integral = 0.0 => error_integral = [{ uniform = [0, 1], per = "agent" }, { uniform = [0, 1] }, 0, 0, 0, 0] :: initial.error_integral ~ share one `per` ~ write the same
 team = 3          => team = 2            :: reference.agents (line 24) = 3 blocks ~ each of the 2 agents ~ change agent.team
 smoothing = 0.1   => smoothing = 0.1\nagents = [{}] :: fault[1].agents (line 66) = 1 blocks ~ each of the 3 agents
 "#,
@@ -207,8 +207,8 @@ smoothing = 0.1   => smoothing = 0.1\nagents = [{}] :: fault[1].agents (line 66)
 fn a_contradiction_is_refused() {
     all_refused(
         r#"
-onset_s = { uniform = [2.5, 4.0] } => onset_s = { uniform = [2.5, 40.0] } :: fault[0].onset_s (line 56) = { uniform = [2.5, 40.0] } ~ before the end at 6 s; begin it earlier
-onset_s = { uniform = [2.5, 4.0] } => onset_s = 6.0 :: fault[0].onset_s (line 56) = 6.0 ~ before the end at 6 s
+onset_s = { uniform = [2.5, 4.0] } => onset_s = { uniform = [2.5, 40.0] } :: fault[0].onset_s (line 56) = { uniform = [2.5, 40.0] } ~ by the last step at 5.998 s; begin it earlier
+onset_s = { uniform = [2.5, 4.0] } => onset_s = 5.999 :: fault[0].onset_s (line 56) = 5.999 ~ before the end
 settle_s = 2.0    => settle_s = 6.0      :: time.settle_s (line 10) = 6.0 ~ before the end at 6 s; start them earlier
 "full"            => "full"\nmax_thrust_n = 10.0 :: agent.max_thrust_n (line 16) = 10.0 ~ only the actuation "thrust" ~ set agent.actuation = "thrust"
 "full"            => "thrust"            :: reference.amplitude (line 21) = [2.0, 1.5, 1.0, 0.1, 0.1, 0.3] ~ roll and pitch follow from the force ~ 0 on channels 4 and 5
@@ -220,6 +220,9 @@ smoothing = 0.1   => smoothing = 0.1\nmagnitude = 1.0 :: fault[1].magnitude (lin
 smoothing = 0.1   => smoothing = 0.1\nagents = [{}, { std = 1.0 }, {}] :: fault[1].agents[1].std (line 66) = 1.0 ~ no such parameter
 period_s = { uniform = [6.0, 12.0] } =>  :: fault[1].period_s (line 59) = absent ~ needs it; add it
 kind = "sine"     => kind = "constant"   :: disturbance[0].frequency_rad_s (line 48) ~ no such parameter ~ its parameters are amplitude
+frequency_rad_s = { uniform = [1.0, 5.0] } => frequency_rad_s = 300.0 :: disturbance[0].frequency_rad_s (line 48) = up to 300.0 rad/s ~ steps of 0.002 s resolve at most 250.0 rad/s ~ shorten time.step_s
+period_s = { uniform = [6.0, 12.0] } => period_s = 0.01 :: fault[1].period_s (line 64) = up to 628.3 rad/s ~ resolve at most 250.0 rad/s; make it slower
+duration_s = 6.0  => duration_s = 15000  :: time.duration_s (line 8) = 15000: the references of 3 agents over 7500000 steps would take 8 GiB; shorten it
 kind = "sinusoid" => kind = "sinusoid"\nmax_speed_m_s = 1.0 :: reference.max_speed_m_s (line 21) ~ "sinusoid" does not have it; remove it
 kind = "sinusoid" => kind = "waypoints"  :: reference.amplitude (line 21) ~ "waypoints" does not have it; remove it
 "pid-tuned"]      => "pid"]              :: controllers (line 5) = ["ftc", "pid", "pid"] ~ each once
@@ -229,8 +232,8 @@ kind = "sinusoid" => kind = "waypoints"  :: reference.amplitude (line 21) ~ "way
 "uav-paper"       => "uav-paper"\nposition.smoothing_weights = [-1.0]\nposition.smoothing_order = 1 :: synthesis.position.smoothing_weights (line 36) ~ smoothing_order ~ remove either
 "uav-paper"       => "uav-paper"\nposition.q2 = [1.0, 1.0] :: synthesis.position.q2 (line 36) = a list of 2: needs 12 values
 "uav-paper"       => "uav-paper"\nnamed.ftc.gains = "g.json" :: synthesis.named.ftc (line 36) ~ built-in ~ choose another
-"uav-paper"       => "uav-paper"\nnamed.mine.gains = "g.json" :: synthesis.named.mine.gains (line 36) = "g.json": no such file; name a gains.json
-preset = "uav-paper" => gains = "g.json" :: synthesis.gains (line 35) = "g.json": no such file; name a gains.json, relative to the campaign
+"uav-paper"       => "uav-paper"\nnamed.mine.gains = "g.json" :: synthesis.named.mine.gains = "g.json": no such file; name a gains.json
+preset = "uav-paper" => gains = "g.json" :: synthesis.gains = "g.json": no such file; name a gains.json, relative to the campaign
 "#,
     );
 }
@@ -313,7 +316,7 @@ fn the_step_that_an_error_advises_is_accepted() {
     let words = [
         "error: c.toml: time.step_s = 0.03: ",
         "is unstable at the pole",
-        "of \"pid\"",
+        "of pid",
     ];
     let said = place.refuses(&run, 2, &words);
     // A step need not be the longest stable one to be good, but has to divide the duration.

@@ -144,3 +144,14 @@ fn a_gains_file_of_another_form_is_refused() {
         &["controllers.ftc", "position and attitude differ in kind"],
     );
 }
+
+#[test]
+fn a_replay_needs_nothing_but_the_directory_of_the_run() {
+    let (place, _) = with_gains();
+    place.succeeds(&["run", "d.toml", "--out", "out"]);
+    for file in ["c.toml", "d.toml", "g.json"] {
+        std::fs::remove_file(place.path(file)).unwrap();
+    }
+    let text = place.succeeds(&["replay", "out", "--episode", "1"]);
+    assert!(text.contains("episode 1 under ftc"), "{text}");
+}

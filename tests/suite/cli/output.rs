@@ -79,9 +79,18 @@ fn another_campaigns_run_is_replaced_only_on_request() {
             "--overwrite",
         ],
     );
-    // The same text may be run again, with other numbers too.
-    place.succeeds(&["run", "c.toml", "--out", "out", "--seed", "7"]);
-    assert!(place.read("out/manifest.json").contains("\"seed\": 7"));
+    // Nor may another seed or a shorter run replace what was flown; the same run may, and a longer one.
+    for fewer in [["--seed", "7"], ["--episodes", "2"]] {
+        let arguments = [&RUN[..], &fewer[..]].concat();
+        place.refuses(
+            &arguments,
+            2,
+            &["holds a run of 3 episodes with seed 2026", "--overwrite"],
+        );
+    }
+    place.succeeds(&RUN);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "4"]);
+    assert!(place.read("out/manifest.json").contains("\"episodes\": 4"));
     place.succeeds(&["run", "d.toml", "--out", "out", "--overwrite"]);
     assert!(place.read("out/manifest.json").contains("max_rmse = 0.9"));
 }
@@ -106,7 +115,7 @@ fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
     place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
     place.succeeds(&["replay", "out", "--episode", "0"]);
     assert_eq!(names(&place.path("out")).len(), FILES.len() + 3);
-    place.succeeds(&["run", "c.toml", "--out", "out", "--seed", "7"]);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "4"]);
     assert_eq!(names(&place.path("out")), FILES);
 }
 
@@ -140,7 +149,10 @@ fn a_run_that_cannot_finish_leaves_no_half_file_and_no_manifest() {
         2,
         &["no readable run"],
     );
-    place.refuses(&RUN, 2, &["no finished run"]);
+    // What it left does not keep it from being run again.
+    fs::remove_dir(place.path("out/comparison.csv")).unwrap();
+    place.succeeds(&RUN);
+    assert_eq!(names(&place.path("out")), FILES);
 }
 
 #[test]

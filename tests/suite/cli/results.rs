@@ -194,6 +194,21 @@ fn a_diverging_episode_is_a_row_with_a_verdict_and_no_nan() {
             for row in finite {
                 assert!(row["rmse_position"].parse::<f64>().unwrap().is_finite());
             }
+            // A diverged episode counts as infinitely bad: no statistic is left out for it.
+            for (table, statistics) in [
+                ("summary", ["failure_rate", "q50", "q95"]),
+                ("comparison", ["log_ratio", "win_rate", "mcnemar_mid_p"]),
+            ] {
+                for row in place.rows(&format!("out/{table}.csv")) {
+                    for name in statistics {
+                        let value = row[name].parse::<f64>();
+                        assert!(
+                            value.is_ok() || row.get("n") == Some(&"0.0".into()),
+                            "{name}: {row:?}"
+                        );
+                    }
+                }
+            }
             let counted: f64 = place.rows("out/summary.csv")[0]["diverged"]
                 .parse()
                 .unwrap();

@@ -69,7 +69,7 @@ fn a_replay_of_what_was_not_flown_is_refused() {
             "ftc, pid, pid-tuned",
         ],
     );
-    for interval in ["0", "-1", "nan", "7"] {
+    for interval in ["0", "-1", "nan", "7", "0.003"] {
         replay(
             &format!("out --episode 0 --interval {interval}"),
             &["--interval", "0.002 s", "use a multiple of the step"],
