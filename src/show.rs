@@ -341,7 +341,7 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
         };
         line(
             &mut text,
-            &format!("    {name:<34} {range}   ({count} values)"),
+            &format!("    {name:<42} {range}   ({count} values)"),
         );
     }
     text
