@@ -4,6 +4,7 @@
 //! reduction of the 12 of (19): the taps beyond the second are a delay line that never feeds back. The observer of a PID has
 //! the 3 states ehat.
 
+use super::integrator::{Step, Stepped};
 use super::lanes::{Lane, Real};
 use crate::synthesis::LoopGains;
 
@@ -69,17 +70,19 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
     sum
 }
 
-/// The derivative of the channel: [e, e', e'', ehat' of (20)].
+/// Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)], each row taken as soon as it is known,
+/// so that few values live at once.
 ///
 /// `told` is the feedback that the observer is told was commanded.
 #[inline(always)]
-pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
+pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     gains: &ChannelGains<L::Real>,
-    state: &[L; NS],
+    channel: &mut Stepped<L, NS>,
     error_acceleration: L,
     sensor_fault: L,
     told: L,
-) -> [L; NS] {
+    h: &Step<L::Real>,
+) {
     let [b1, b2] = [
         L::splat(gains.sensor_fault_input[0]),
         L::splat(gains.sensor_fault_input[1]),
@@ -89,6 +92,7 @@ pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
         L::splat(gains.smoothing[1]),
         L::splat(gains.smoothing[2]),
     ];
+    let state = *channel.at::<STAGE>();
     let unexplained = if NS == FTC_STATES {
         sensor_fault - state[OBSERVER + 5]
     } else {
@@ -100,38 +104,31 @@ pub(crate) fn channel_derivative<L: Lane, const NS: usize>(
         unexplained.mul_add(b1, state[1] - state[OBSERVER + 1]),
         unexplained.mul_add(b2, state[2] - state[OBSERVER + 2]),
     ];
-    let mut slope = [state[1]; NS];
-    slope[1] = state[2];
-    slope[2] = error_acceleration;
-    slope[OBSERVER] = injected(&gains.injection[0], &innovation, state[OBSERVER + 1]);
-    slope[OBSERVER + 1] = injected(&gains.injection[1], &innovation, state[OBSERVER + 2]);
+    channel.take::<STAGE>(0, state[1], h);
+    channel.take::<STAGE>(1, state[2], h);
+    channel.take::<STAGE>(2, error_acceleration, h);
+    let rows = &gains.injection;
+    let mut row = injected(&rows[0], &innovation, state[OBSERVER + 1]);
+    channel.take::<STAGE>(OBSERVER, row, h);
+    row = injected(&rows[1], &innovation, state[OBSERVER + 2]);
+    channel.take::<STAGE>(OBSERVER + 1, row, h);
     if NS == FTC_STATES {
-        slope[OBSERVER + 2] =
-            injected(&gains.injection[2], &innovation, state[OBSERVER + 3] + told);
-        slope[OBSERVER + 3] = injected(
-            &gains.injection[3],
-            &innovation,
-            state[OBSERVER + 3].mul_add(a, state[OBSERVER + 4] * b),
-        );
-        slope[OBSERVER + 4] = injected(
-            &gains.injection[4],
-            &innovation,
-            (state[OBSERVER + 3] - state[OBSERVER + 4]) * c,
-        );
-        slope[OBSERVER + 5] = injected(
-            &gains.injection[5],
-            &innovation,
-            state[OBSERVER + 5].mul_add(a, state[OBSERVER + 6] * b),
-        );
-        slope[OBSERVER + 6] = injected(
-            &gains.injection[6],
-            &innovation,
-            (state[OBSERVER + 5] - state[OBSERVER + 6]) * c,
-        );
+        let [f1, f1_before] = [state[OBSERVER + 3], state[OBSERVER + 4]];
+        row = injected(&rows[2], &innovation, f1) + told;
+        channel.take::<STAGE>(OBSERVER + 2, row, h);
+        row = injected(&rows[3], &innovation, f1.mul_add(a, f1_before * b));
+        channel.take::<STAGE>(OBSERVER + 3, row, h);
+        row = injected(&rows[4], &innovation, (f1 - f1_before) * c);
+        channel.take::<STAGE>(OBSERVER + 4, row, h);
+        let [f2, f2_before] = [state[OBSERVER + 5], state[OBSERVER + 6]];
+        row = injected(&rows[5], &innovation, f2.mul_add(a, f2_before * b));
+        channel.take::<STAGE>(OBSERVER + 5, row, h);
+        row = injected(&rows[6], &innovation, (f2 - f2_before) * c);
+        channel.take::<STAGE>(OBSERVER + 6, row, h);
     } else {
-        slope[OBSERVER + 2] = injected(&gains.injection[2], &innovation, told);
+        row = injected(&rows[2], &innovation, told);
+        channel.take::<STAGE>(OBSERVER + 2, row, h);
     }
-    slope
 }
 
 /// base - L (y - yhat), one row.

@@ -8,7 +8,7 @@
     reason = "a channel is one index of several arrays, as in the shaders to come"
 )]
 
-use super::controller::{ChannelGains, OBSERVER, channel_derivative, fault_estimates, feedback};
+use super::controller::{ChannelGains, OBSERVER, fault_estimates, feedback, step_channel};
 use super::integrator::{Step, Stepped};
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
 use super::metric::{ChannelOutcome, Limits, Metrics, Sample};
@@ -282,16 +282,18 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                 agent.observe::<P, SETTLED>(&setting.limits, &response, now);
             }
             for c in 0..NC {
-                let slope = channel_derivative(
+                step_channel::<L, NS, STAGE>(
                     &setting.gains[c],
-                    agent.channels[c].at::<STAGE>(),
+                    &mut agent.channels[c],
                     response.error_acceleration[c],
                     agent.signals.sensor_fault[c],
                     response.told[c],
+                    h,
                 );
-                agent.channels[c].take::<STAGE>(slope, h);
             }
-            agent.extra.take::<STAGE>(response.extra_rate, h);
+            for k in 0..NX {
+                agent.extra.take::<STAGE>(k, response.extra_rate[k], h);
+            }
         }
     }
 

@@ -49,24 +49,21 @@ impl<L: Lane, const N: usize> Stepped<L, N> {
         if STAGE == 0 { &self.start } else { &self.point }
     }
 
-    /// Takes in the slope of stage `STAGE`; the last one ends the step.
+    /// Takes in the slope of state `k` at stage `STAGE`; the last stage ends the step.
     #[inline(always)]
-    pub(crate) fn take<const STAGE: usize>(&mut self, slope: [L; N], h: &Step<L::Real>) {
+    pub(crate) fn take<const STAGE: usize>(&mut self, k: usize, slope: L, h: &Step<L::Real>) {
         let (sixth, third) = (L::splat(h.sixth), L::splat(h.third));
         let ahead = L::splat(if STAGE < 2 { h.half } else { h.whole });
-        for k in 0..N {
-            let slope = slope[k];
-            match STAGE {
-                0 => {
-                    self.sum[k] = slope.mul_add(sixth, self.start[k]);
-                    self.point[k] = slope.mul_add(ahead, self.start[k]);
-                }
-                1 | 2 => {
-                    self.sum[k] = slope.mul_add(third, self.sum[k]);
-                    self.point[k] = slope.mul_add(ahead, self.start[k]);
-                }
-                _ => self.start[k] = slope.mul_add(sixth, self.sum[k]),
+        match STAGE {
+            0 => {
+                self.sum[k] = slope.mul_add(sixth, self.start[k]);
+                self.point[k] = slope.mul_add(ahead, self.start[k]);
             }
+            1 | 2 => {
+                self.sum[k] = slope.mul_add(third, self.sum[k]);
+                self.point[k] = slope.mul_add(ahead, self.start[k]);
+            }
+            _ => self.start[k] = slope.mul_add(sixth, self.sum[k]),
         }
     }
 }

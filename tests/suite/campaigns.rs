@@ -62,7 +62,7 @@ fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_21_and_pid_tuned_by_7_to_11_and_n
     let status = &tables(&campaign, Precision::F32).scores.status;
     assert!(status[0].iter().all(|status| *status == Status::Ok));
     assert!(
-        status[1].iter().any(|status| *status == Status::Exceeded),
+        status[1].contains(&Status::Exceeded),
         "the plain PID exceeds in this campaign"
     );
 }

@@ -1,0 +1,272 @@
+//! What a run found, for people and for programs.
+
+use super::line;
+use serde_json::{Value, json};
+use std::path::Path;
+use urts_mc::campaign::Campaign;
+use urts_mc::comparison::{FailureRate, PairedComparison, Ratio};
+use urts_mc::run::Findings;
+use urts_mc::statistics::{Estimate, Interval};
+
+/// The findings of a run at a glance.
+pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
+    let mut text = String::new();
+    let manifest = &findings.manifest;
+    let simd = manifest
+        .simd
+        .map_or(String::new(), |simd| format!(" {simd:?}").to_lowercase());
+    let precision = format!("{:?}", manifest.precision).to_lowercase();
+    line(
+        &mut text,
+        &format!(
+            "{}: {} episodes x {} UAVs, seed {}, {precision}{simd} on the CPU, {} threads, {:.1} s of flying",
+            campaign.name,
+            campaign.episodes,
+            campaign.team,
+            campaign.seed,
+            manifest.threads,
+            manifest.times.loop_s
+        ),
+    );
+    line(
+        &mut text,
+        "\nfailures (an episode fails with any of its UAVs)",
+    );
+    line(
+        &mut text,
+        &format!(
+            "  {:<12} {:>14}  {:>8}  {:<19} {}",
+            "controller", "failed", "rate", "Wilson 95 %", "95 % sure below"
+        ),
+    );
+    for failures in rates(findings, "all") {
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {:>14}  {:>7.2}%  {:<19} {:.2}%{}",
+                failures.controller,
+                format!("{} of {}", failures.failed(), failures.n),
+                100.0 * failures.rate(),
+                format!(
+                    "{:.2} .. {:.2}%",
+                    100.0 * failures.wilson.lower,
+                    100.0 * failures.wilson.upper
+                ),
+                100.0 * failures.upper_95,
+                if failures.diverged > 0 {
+                    format!("  ({} diverged)", failures.diverged)
+                } else {
+                    String::new()
+                },
+            ),
+        );
+    }
+    line(
+        &mut text,
+        "\nRMS error from settle_s on, median [95 % interval] and 95th percentile over the episodes",
+    );
+    line(
+        &mut text,
+        &format!(
+            "  {:<12} {:>34}  {:>34}",
+            "controller", "position, m", "attitude, rad"
+        ),
+    );
+    for name in &campaign.controllers {
+        let cell = |group: &str| {
+            let row = findings.summary.iter().find(|row| {
+                row.failures.controller == *name
+                    && row.failures.stratum == "all"
+                    && row.metric == "rmse"
+                    && row.group == group
+            });
+            row.map_or(String::new(), |row| {
+                let value = |k: usize| {
+                    row.quantiles[k]
+                        .1
+                        .map_or("-".to_string(), |value| format!("{value:.4}"))
+                };
+                let interval = row.quantiles[0].2.map_or(String::new(), |i| {
+                    format!(" [{:.4}, {:.4}]", i.lower, i.upper)
+                });
+                format!("{}{interval}, {}", value(0), value(1))
+            })
+        };
+        line(
+            &mut text,
+            &format!(
+                "  {name:<12} {:>34}  {:>34}",
+                cell("position"),
+                cell("attitude")
+            ),
+        );
+    }
+    if !findings.comparisons.is_empty() {
+        line(
+            &mut text,
+            "\npair by pair: how many times smaller the RMS error of the first is, median [BCa 95 %], and how often it wins",
+        );
+    }
+    for comparison in &findings.comparisons {
+        line(
+            &mut text,
+            &format!("  {} against {}", comparison.a, comparison.b),
+        );
+        for ratio in &comparison.ratios {
+            line(
+                &mut text,
+                &format!("    {:<9} {}", ratio.name, ratio_text(ratio)),
+            );
+        }
+        line(
+            &mut text,
+            &format!("    failures  {}", failures_text(comparison)),
+        );
+    }
+    let times = manifest.times;
+    line(
+        &mut text,
+        &format!(
+            "\nwritten to {} (synthesis {:.1} s, flying {:.1} s, statistics {:.1} s, writing {:.1} s)",
+            out.display(),
+            times.synthesis_s,
+            times.loop_s,
+            times.statistics_s,
+            times.writing_s
+        ),
+    );
+    text
+}
+
+/// The requirements that do not hold, each with the reason and what to do: one a line.
+pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
+    let unmet = findings.unmet.iter().map(|(requirement, rate)| {
+        let index = campaign
+            .requirements
+            .iter()
+            .position(|own| own == *requirement)
+            .unwrap_or_default();
+        let limit = requirement.failure_rate_upper_95;
+        let remedy = if rate.failed() == 0 && limit > 0.0 {
+            let enough = (0.05_f64.ln() / (-limit).ln_1p()).ceil();
+            format!("fly at least {enough} episodes")
+        } else if rate.rate() < limit {
+            "fly more episodes, or change the controller or the limit".to_string()
+        } else {
+            "change the controller or the limit".to_string()
+        };
+        format!(
+            "{}: require[{index}].failure_rate_upper_95 = {limit}: {:?} failed in {} of {} episodes, so with 95 % \
+             confidence its failure rate is known only to be below {:.4}; {remedy}",
+            campaign.path.display(),
+            requirement.controller,
+            rate.failed(),
+            rate.n,
+            rate.upper_95,
+        )
+    });
+    unmet.collect::<Vec<_>>().join("\n")
+}
+
+fn ratio_text(ratio: &Ratio) -> String {
+    let wins = ratio.win_rate.map_or(String::new(), |rate| {
+        format!("  wins {:>5.1} %", 100.0 * rate.value)
+    });
+    let diverged: u64 = ratio.diverged.iter().sum();
+    let note = if diverged > 0 {
+        format!("  (a diverged episode counts as infinitely bad: {diverged} pairs)")
+    } else {
+        String::new()
+    };
+    match ratio.log_ratio {
+        Some(Estimate {
+            value,
+            interval: Interval { lower, upper },
+        }) => {
+            let interval = format!("[{}, {}]", times(lower), times(upper));
+            format!("{:>8} {interval:<19}{wins}{note}", times(value))
+        }
+        None => "no episodes".to_string(),
+    }
+}
+
+fn times(log_ratio: f64) -> String {
+    let ratio = log_ratio.exp();
+    if ratio.is_infinite() {
+        "inf".into()
+    } else {
+        format!("{ratio:.2}x")
+    }
+}
+
+fn failures_text(comparison: &PairedComparison) -> String {
+    let failures = &comparison.failures;
+    let difference = comparison.difference.map_or(String::new(), |difference| {
+        format!(
+            "{:+.2} % [{:+.2}, {:+.2}], ",
+            100.0 * difference.value,
+            100.0 * difference.interval.lower,
+            100.0 * difference.interval.upper
+        )
+    });
+    format!(
+        "{difference}only {} {}, only {} {}, both {}, McNemar mid-p {:.2e}",
+        comparison.a,
+        failures.only_a,
+        comparison.b,
+        failures.only_b,
+        failures.both,
+        comparison.mid_p
+    )
+}
+
+fn rates<'a>(findings: &'a Findings<'_>, stratum: &str) -> Vec<&'a FailureRate> {
+    let mut rates: Vec<&FailureRate> = findings
+        .summary
+        .iter()
+        .map(|row| &row.failures)
+        .filter(|failures| failures.stratum == stratum)
+        .collect();
+    rates.dedup();
+    rates
+}
+
+/// The findings of a run for programs.
+pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
+    let interval = |interval: Interval| json!([finite(interval.lower), finite(interval.upper)]);
+    let estimate = |estimate: Option<Estimate>| {
+        estimate.map(|estimate| json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval) }))
+    };
+    let rate = |rate: &FailureRate| {
+        json!({
+            "controller": rate.controller, "stratum": rate.stratum, "n": rate.n, "failed": rate.failed(),
+            "exceeded": rate.exceeded, "diverged": rate.diverged, "failure_rate": rate.rate(),
+            "wilson_95": interval(rate.wilson), "upper_95": rate.upper_95,
+        })
+    };
+    json!({
+        "manifest": findings.manifest,
+        "failures": findings.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
+            if rates.last() != Some(&failures) { rates.push(failures); }
+            rates
+        }).into_iter().map(rate).collect::<Vec<_>>(),
+        "comparisons": findings.comparisons.iter().map(|comparison| json!({
+            "a": comparison.a, "b": comparison.b,
+            "both_failed": comparison.failures.both, "only_a_failed": comparison.failures.only_a,
+            "only_b_failed": comparison.failures.only_b, "neither_failed": comparison.failures.neither,
+            "mcnemar_mid_p": comparison.mid_p, "failure_rate_difference": estimate(comparison.difference),
+            "log_ratios": comparison.ratios.iter().map(|ratio| json!({
+                "scope": ratio.scope, "name": ratio.name, "log_ratio": estimate(ratio.log_ratio),
+                "win_rate": estimate(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "unmet_requirements": findings.unmet.iter().map(|(requirement, found)| json!({
+            "controller": requirement.controller, "limit": requirement.failure_rate_upper_95, "found": rate(found),
+        })).collect::<Vec<_>>(),
+    })
+}
+
+/// JSON has no infinity: it is written as null, as in the Parquet tables' readers.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

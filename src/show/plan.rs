@@ -1,0 +1,153 @@
+//! What a campaign would do.
+
+use super::line;
+use serde_json::{Value, json};
+use urts_mc::campaign::Campaign;
+use urts_mc::draw::draw;
+use urts_mc::gains::{GainSet, ROLES};
+
+/// Episodes that `check` draws to show real ranges.
+const SHOWN_DRAWS: u32 = 200;
+
+/// What a campaign would do.
+pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
+    let mut text = String::new();
+    let steps = f64::from(campaign.time.steps);
+    let work =
+        steps * f64::from(campaign.episodes) * (campaign.team * campaign.controllers.len()) as f64;
+    line(
+        &mut text,
+        &format!("{}: {}", campaign.path.display(), campaign.name),
+    );
+    line(
+        &mut text,
+        &format!(
+            "  {} episodes of {} UAVs over {} s in steps of {} s, seed {}",
+            campaign.episodes,
+            campaign.team,
+            steps * campaign.time.step_s,
+            campaign.time.step_s,
+            campaign.seed
+        ),
+    );
+    line(
+        &mut text,
+        &format!(
+            "  controllers {}: {:.2e} UAV-steps, about {:.0} s on one core with 16 SIMD lanes (at 25 million a second)",
+            campaign.controllers.join(", "),
+            work,
+            (work / 25e6).ceil()
+        ),
+    );
+    for controller in &gains.controllers {
+        for (role, channel) in ROLES.iter().zip(&controller.channels) {
+            let level = channel
+                .findings
+                .as_ref()
+                .and_then(|findings| findings.certificate.as_ref());
+            let level = level.map_or(String::new(), |certificate| {
+                format!(", certified rho {:.3}", certificate.rho)
+            });
+            line(
+                &mut text,
+                &format!(
+                    "  gains of {} on {role}: {}{level}",
+                    controller.name, controller.source
+                ),
+            );
+        }
+    }
+    line(
+        &mut text,
+        &format!(
+            "  drawn in the first {} episodes, as applied (lowest .. highest):",
+            SHOWN_DRAWS.min(campaign.episodes)
+        ),
+    );
+    for (name, low, high, count) in ranges(campaign) {
+        let range = if low >= high {
+            format!("{low:.6}")
+        } else {
+            format!("{low:.6} .. {high:.6}")
+        };
+        line(
+            &mut text,
+            &format!("    {name:<42} {range}   ({count} values)"),
+        );
+    }
+    text
+}
+
+/// [`plan`] for programs.
+pub(crate) fn plan_json(campaign: &Campaign) -> Value {
+    json!({
+        "name": campaign.name, "episodes": campaign.episodes, "team": campaign.team, "seed": campaign.seed,
+        "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
+        "drawn": ranges(campaign).into_iter().map(|(name, low, high, count)| json!({
+            "name": name, "lowest": low, "highest": high, "values": count,
+        })).collect::<Vec<_>>(),
+    })
+}
+
+/// The range of every quantity over the first episodes: name, lowest, highest, number of values.
+fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
+    let mut drawn: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut add =
+        |name: String, values: &[f64]| match drawn.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, all)) => all.extend(values),
+            None => drawn.push((name, values.to_vec())),
+        };
+    for episode in 0..SHOWN_DRAWS.min(campaign.episodes) {
+        for agent in draw(campaign, episode).agents {
+            add("mass_scale".into(), &[agent.mass_scale]);
+            add("inertia_scale".into(), &[agent.inertia_scale]);
+            add("kappa".into(), &[agent.kappa]);
+            add("initial error".into(), &agent.error);
+            add("initial error_rate".into(), &agent.error_rate);
+            add("initial error_integral".into(), &agent.error_integral);
+            for (k, (disturbance, values)) in campaign
+                .disturbances
+                .iter()
+                .zip(&agent.disturbances)
+                .enumerate()
+            {
+                for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
+                    add(format!("disturbance[{k}] {}", parameter.name), values);
+                }
+            }
+            for (k, (fault, draw)) in campaign.faults.iter().zip(&agent.faults).enumerate() {
+                let struck = |values: &[f64]| -> Vec<f64> {
+                    values
+                        .iter()
+                        .zip(&draw.strikes)
+                        .filter(|(_, strikes)| **strikes)
+                        .map(|(value, _)| *value)
+                        .collect()
+                };
+                let kind = fault.kind.name();
+                add(
+                    format!("fault[{k}] {kind} occurs"),
+                    &[f64::from(u8::from(draw.occurs()))],
+                );
+                if draw.occurs() {
+                    add(format!("fault[{k}] {kind} onset_s"), &[draw.onset_s]);
+                }
+                for (parameter, values) in fault.kind.parameters().iter().zip(&draw.parameters) {
+                    add(
+                        format!("fault[{k}] {kind} {}", parameter.name),
+                        &struck(values),
+                    );
+                }
+            }
+        }
+    }
+    drawn
+        .into_iter()
+        .filter(|(_, values)| !values.is_empty())
+        .map(|(name, values)| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            (name, low, high, values.len())
+        })
+        .collect()
+}
