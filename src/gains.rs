@@ -404,14 +404,14 @@ fn from_file(
         .map_err(|error| broken(format!("{error}; write it as the gains.json of a run")))?;
     if file.format != FORMAT {
         return Err(broken(format!(
-            "format = {}: this program reads format {FORMAT}",
+            "format = {}: this program reads format {FORMAT}; run the campaign that made the file again",
             file.format
         )));
     }
     let found = file.controllers.get(controller).ok_or_else(|| {
         let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
         broken(format!(
-            "controllers.{controller}: absent; the file has {}",
+            "controllers.{controller}: absent, the file has {}; add it or name one of these",
             known.join(", ")
         ))
     })?;

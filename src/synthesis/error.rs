@@ -64,7 +64,7 @@ pub enum SynthesisError {
         iterations: u32,
     },
     /// A check that does not depend on the solver failed.
-    #[error("{step}: {name} is {value:e} but must be below {limit}; {remedy}")]
+    #[error("{step}: {name} is {value:.3e} but must be below {limit}; {remedy}")]
     CheckFailed {
         /// Which step.
         step: Step,

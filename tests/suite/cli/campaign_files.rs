@@ -232,8 +232,8 @@ kind = "sinusoid" => kind = "waypoints"  :: reference.amplitude (line 21) ~ "way
 "uav-paper"       => "uav-paper"\nposition.smoothing_weights = [-1.0]\nposition.smoothing_order = 1 :: synthesis.position.smoothing_weights (line 36) ~ smoothing_order ~ remove either
 "uav-paper"       => "uav-paper"\nposition.q2 = [1.0, 1.0] :: synthesis.position.q2 (line 36) = a list of 2: needs 12 values
 "uav-paper"       => "uav-paper"\nnamed.ftc.gains = "g.json" :: synthesis.named.ftc (line 36) ~ built-in ~ choose another
-"uav-paper"       => "uav-paper"\nnamed.mine.gains = "g.json" :: synthesis.named.mine.gains = "g.json": no such file; name a gains.json
-preset = "uav-paper" => gains = "g.json" :: synthesis.gains = "g.json": no such file; name a gains.json, relative to the campaign
+"uav-paper"       => "uav-paper"\nnamed.mine.gains = "g.json" :: synthesis.named.mine.gains (line 36) = "g.json": no such file; name a gains.json
+preset = "uav-paper" => gains = "g.json" :: synthesis.gains (line 35) = "g.json": no such file; name a gains.json, relative to the campaign
 "#,
     );
 }
@@ -316,7 +316,7 @@ fn the_step_that_an_error_advises_is_accepted() {
     let words = [
         "error: c.toml: time.step_s = 0.03: ",
         "is unstable at the pole",
-        "of pid",
+        "of \"pid\"",
     ];
     let said = place.refuses(&run, 2, &words);
     // A step need not be the longest stable one to be good, but has to divide the duration.
