@@ -44,7 +44,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
-fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_21_and_pid_tuned_by_7_to_11_and_never_fails() {
+fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_20_and_pid_tuned_by_7_to_10_and_never_fails() {
     // An independent run of these draws gave 19.0 and 7.6 as medians over channels.
     let mut campaign = campaign("uav-paper");
     campaign.episodes = 256;
@@ -52,11 +52,11 @@ fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_21_and_pid_tuned_by_7_to_11_and_n
     let against_tuned = channel_ratios(&campaign, "ftc", "pid-tuned");
     println!("ftc/pid {against_pid:.2?}\nftc/pid-tuned {against_tuned:.2?}");
     assert!(
-        (15.0..21.0).contains(&median(against_pid.clone())),
+        (15.0..20.0).contains(&median(against_pid.clone())),
         "{against_pid:?}"
     );
     assert!(
-        (7.0..10.5).contains(&median(against_tuned.clone())),
+        (7.0..10.0).contains(&median(against_tuned.clone())),
         "{against_tuned:?}"
     );
     let status = &tables(&campaign, Precision::F32).scores.status;

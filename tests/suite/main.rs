@@ -8,7 +8,8 @@
 //! | `statistics` | estimators against published values, and their coverage |
 //! | `path` | the waypoint reference |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
-//! | `model` | lanes, random numbers, order of the integration, limits |
+//! | `lanes` | elementary functions, phases and selections on every lane type |
+//! | `model` | order of the integration, limits, noise, draws |
 //! | `campaigns` | every shipped campaign; what the paper claims |
 //! | `cli` | commands, exit codes and error messages |
 //!
@@ -30,6 +31,7 @@ mod common;
 
 mod campaigns;
 mod determinism;
+mod lanes;
 mod lapack;
 mod model;
 mod path;
