@@ -209,12 +209,15 @@ impl Draws {
     }
 }
 
-/// An agent's channel as an address; 64 channels per agent leave room for every robot.
+/// Addresses that an agent has: more than any robot has channels.
+pub(crate) const MEMBERS_PER_AGENT: usize = 64;
+
+/// An agent's channel as an address.
 #[must_use]
 #[expect(
     clippy::cast_possible_truncation,
     reason = "teams and channels are small"
 )]
 pub fn member(agent: usize, channel: usize) -> u32 {
-    (agent * 64 + channel) as u32
+    (agent * MEMBERS_PER_AGENT + channel) as u32
 }

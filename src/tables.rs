@@ -1,6 +1,6 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
-use crate::backend::cpu::Flown;
+use crate::backend::Flown;
 use crate::campaign::{Campaign, Time, UAV_CHANNELS};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
@@ -245,7 +245,7 @@ impl<'a> Judged<'a> {
         Self {
             outcome,
             status,
-            first_fault: crate::model::episode::later_onsets(campaign, draw)
+            first_fault: crate::model::condition::later_onsets(campaign, draw)
                 .into_iter()
                 .min(),
         }

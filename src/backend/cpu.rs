@@ -1,5 +1,6 @@
 //! The CPU backend: blocks of episodes over all cores, each block in the widest lanes that the processor has.
 
+use super::Flown;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
 use crate::model::episode::{AgentOutcome, Controller, Model, Snapshot};
@@ -75,15 +76,6 @@ struct Flyer<R> {
     campaign: Campaign,
     model: Model<R>,
     controllers: Vec<Controller<R>>,
-}
-
-/// One episode: its draw and, `[controller][agent]`, how it went.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Flown {
-    /// What was drawn.
-    pub episode: Episode,
-    /// How it went.
-    pub outcomes: Vec<Vec<AgentOutcome>>,
 }
 
 impl Cpu {

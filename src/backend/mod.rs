@@ -1,3 +1,16 @@
 //! Where episodes are flown: draws in, outcomes out.
 
 pub mod cpu;
+pub mod gpu;
+
+use crate::draw::Episode;
+use crate::model::episode::AgentOutcome;
+
+/// One episode: its draw and, `[controller][agent]`, how it went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flown {
+    /// What was drawn.
+    pub episode: Episode,
+    /// How it went.
+    pub outcomes: Vec<Vec<AgentOutcome>>,
+}

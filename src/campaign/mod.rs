@@ -139,6 +139,12 @@ impl Campaign {
         &UAV_CHANNELS
     }
 
+    /// Whether the agents of a team act on each other in some episode.
+    #[must_use]
+    pub fn is_coupled(&self) -> bool {
+        self.team > 1 && !self.kappa.is_zero()
+    }
+
     /// The groups of channels whose errors may be averaged: metres and radians are never mixed.
     #[must_use]
     pub fn channel_groups(&self) -> [(&'static str, Range<usize>); 2] {

@@ -19,13 +19,13 @@ pub const OBSERVER: usize = 3;
 #[derive(Debug, Clone, Copy)]
 pub struct ChannelGains<R> {
     /// K of (21).
-    feedback: [R; 7],
+    pub(crate) feedback: [R; 7],
     /// -L of (20).
-    injection: [[R; 3]; 7],
+    pub(crate) injection: [[R; 3]; 7],
     /// Smoothing model (18): F_0' = a F_0 + b F_1, F_1' = c (F_0 - F_1).
-    smoothing: [R; 3],
+    pub(crate) smoothing: [R; 3],
     /// Second and third entry of B20, (34); the first is zero, since the integral is computed and not sensed.
-    sensor_fault_input: [R; 2],
+    pub(crate) sensor_fault_input: [R; 2],
 }
 
 impl<R: Real> ChannelGains<R> {

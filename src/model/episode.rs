@@ -2,22 +2,18 @@
 
 #![expect(
     clippy::needless_range_loop,
-    reason = "a channel is one index of several arrays, as in the shaders to come"
+    reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
+use super::condition::{Block, Condition, Entries, later_onsets};
 use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES};
-use super::group::{Advance, Agent, Group, Setting, Show, Shown};
-use super::lanes::{Lane, MAX_WIDTH, Real};
+use super::group::{Advance, Agent, Ending, Group, Setting, Show, Shown};
+use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::plant_uav::{Attitude, Axis, Plant, ReferenceRow, Thrust, inertia, non_inertial};
-use super::signal::{Noise, Signals, Sine, Square, Switch};
-use crate::campaign::{
-    ActuationKind, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE, FaultKind, FaultTarget,
-    ObserverStart,
-};
-use crate::draw::{AgentDraw, Episode, FaultDraw, member};
+use crate::campaign::{ActuationKind, Campaign, FIRST_ATTITUDE, ObserverStart};
+use crate::draw::Episode;
 use crate::synthesis::LoopGains;
-use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Channels of a UAV.
@@ -25,21 +21,33 @@ const CHANNELS: usize = 6;
 
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
-    campaign: Campaign,
-    parts: Vec<Part<R>>,
+    pub(crate) campaign: Campaign,
+    pub(crate) parts: Vec<Part<R>>,
 }
 
-/// A group of channels and its reference table.
-struct Part<R> {
-    channels: Range<usize>,
-    table: Vec<ReferenceRow<R>>,
+/// What holds a group of channels together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PlantKind {
+    /// One axis of translation, fully actuated.
+    Axis,
+    /// The attitude, fully actuated.
+    Attitude,
+    /// All channels, with thrust along the body axis.
+    Thrust,
+}
+
+/// A group of channels and its reference table, `[half step][agent][channel]`.
+pub(crate) struct Part<R> {
+    pub(crate) plant: PlantKind,
+    pub(crate) channels: Range<usize>,
+    pub(crate) table: Vec<ReferenceRow<R>>,
 }
 
 /// A controller in the precision of the loop: its gains on the position and on the attitude channels.
 #[derive(Debug, Clone, Copy)]
 pub struct Controller<R> {
-    gains: [ChannelGains<R>; 2],
-    ftc: bool,
+    pub(crate) gains: [ChannelGains<R>; 2],
+    pub(crate) ftc: bool,
 }
 
 /// How an agent fared in an episode under one controller.
@@ -60,6 +68,24 @@ pub struct Snapshot {
     pub step: u32,
     /// `[agent][channel]`.
     pub agents: Vec<Vec<Shown>>,
+}
+
+impl AgentOutcome {
+    /// The outcome before anything is known of it.
+    pub(crate) fn blank() -> Self {
+        Self {
+            failed_step: None,
+            diverged: false,
+            channels: vec![ChannelOutcome::default(); CHANNELS],
+        }
+    }
+
+    /// Takes in the outcome of a channel, and how the agent ended as far as its group of channels tells.
+    pub(crate) fn take(&mut self, channel: usize, ending: Ending, outcome: ChannelOutcome) {
+        self.channels[channel] = outcome;
+        self.diverged |= !outcome.is_finite() || !ending.finite;
+        self.failed_step = self.failed_step.into_iter().chain(ending.failed_step).min();
+    }
 }
 
 impl<R: Real> Controller<R> {
@@ -86,7 +112,12 @@ impl<R: Real> Model<R> {
             .windows(2)
             .map(|ends| ends[0]..ends[1])
             .map(|channels| Part {
-                channels: channels.clone(),
+                plant: match (campaign.uav.actuation, channels.start) {
+                    (ActuationKind::Thrust, _) => PlantKind::Thrust,
+                    (ActuationKind::Full, FIRST_ATTITUDE) => PlantKind::Attitude,
+                    (ActuationKind::Full, _) => PlantKind::Axis,
+                },
+                channels,
                 table: Vec::new(),
             })
             .collect();
@@ -138,15 +169,14 @@ impl<R: Real> Model<R> {
         episodes: &[Episode],
         every: Option<u32>,
     ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
-        let blank = AgentOutcome {
-            failed_step: None,
-            diverged: false,
-            channels: vec![ChannelOutcome::default(); CHANNELS],
-        };
+        let blank = AgentOutcome::blank();
         let mut flight = Flight {
             model: self,
             controller,
-            episodes,
+            block: Block {
+                campaign: &self.campaign,
+                episodes,
+            },
             every,
             outcomes: vec![vec![blank; self.campaign.team]; episodes.len()],
             snapshots: Vec::new(),
@@ -188,7 +218,7 @@ fn reference_rows<R: Real>(
 struct Flight<'a, R> {
     model: &'a Model<R>,
     controller: &'a Controller<R>,
-    episodes: &'a [Episode],
+    block: Block<'a>,
     /// Steps between two snapshots, if any are taken.
     every: Option<u32>,
     outcomes: Vec<Vec<AgentOutcome>>,
@@ -198,12 +228,12 @@ struct Flight<'a, R> {
 impl<R: Real> Flight<'_, R> {
     fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Part<R>) {
         let uav = &self.model.campaign.uav;
-        match (uav.actuation, part.channels.start) {
-            (ActuationKind::Thrust, _) => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
-            (ActuationKind::Full, FIRST_ATTITUDE) => {
-                self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part)
+        match part.plant {
+            PlantKind::Axis => {
+                self.group::<L, _, 1, NS, 0>(Axis::new(uav, part.channels.start), part);
             }
-            (ActuationKind::Full, axis) => self.group::<L, _, 1, NS, 0>(Axis::new(uav, axis), part),
+            PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
+            PlantKind::Thrust => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
         }
     }
 
@@ -229,7 +259,7 @@ impl<R: Real> Flight<'_, R> {
                     verdict.settled_error[first + c],
                 )
             }),
-            coupled: campaign.team > 1 && !campaign.kappa.is_zero(),
+            coupled: campaign.is_coupled(),
             step_s: campaign.time.step_s,
             settle_step: campaign.time.settle_step,
             seed: campaign.seed,
@@ -238,10 +268,11 @@ impl<R: Real> Flight<'_, R> {
         let agents = (0..campaign.team)
             .map(|agent| self.agent::<L, NC, NS, NX>(&setting.gains, agent, first))
             .collect();
-        let numbers = std::array::from_fn(|lane| self.lane_episode(lane).index);
+        let numbers = self.block.numbers();
         let changes = (0..campaign.team)
             .flat_map(|agent| {
-                self.episodes
+                self.block
+                    .episodes
                     .iter()
                     .flat_map(move |episode| later_onsets(campaign, &episode.agents[agent]))
             })
@@ -273,16 +304,6 @@ impl<R: Real> Flight<'_, R> {
         self.collect(&mut group, first);
     }
 
-    /// The episode of a lane; lanes without one repeat the last.
-    fn lane_episode(&self, lane: usize) -> &Episode {
-        &self.episodes[lane.min(self.episodes.len() - 1)]
-    }
-
-    /// A number of each lane's draw.
-    fn lanes(&self, agent: usize, pick: impl Fn(&AgentDraw) -> f64) -> [f64; MAX_WIDTH] {
-        std::array::from_fn(|lane| pick(&self.lane_episode(lane).agents[agent]))
-    }
-
     /// The initial state of an agent and what will act on it.
     fn agent<L: Lane<Real = R>, const NC: usize, const NS: usize, const NX: usize>(
         &self,
@@ -291,23 +312,13 @@ impl<R: Real> Flight<'_, R> {
         first: usize,
     ) -> Agent<L, NC, NS, NX> {
         let campaign = &self.model.campaign;
-        let mut signals = Signals::none();
-        for (index, disturbance) in campaign.disturbances.iter().enumerate() {
-            self.add_disturbance(&mut signals, disturbance, index, agent, first);
-        }
-        for index in 0..campaign.faults.len() {
-            self.add_fault(&mut signals, index, agent, first);
-        }
-        let first_sensor_fault = signals.clone().at_start(
-            campaign.seed,
-            &std::array::from_fn(|lane| self.lane_episode(lane).index),
-        );
-        let inertia = inertia(&campaign.uav);
+        let condition: Condition<L, NC> = self.block.condition(agent, first, Entries::Acting);
+        let first_sensor_fault = condition
+            .signals
+            .clone()
+            .at_start(campaign.seed, &self.block.numbers());
         let channels = std::array::from_fn(|c| {
-            let channel = first + c;
-            let integral = L::load(&self.lanes(agent, |draw| draw.error_integral[channel]));
-            let error = L::load(&self.lanes(agent, |draw| draw.error[channel]));
-            let rate = L::load(&self.lanes(agent, |draw| draw.error_rate[channel]));
+            let [integral, error, rate] = condition.initial[c];
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
             if campaign.initial.observer == ObserverStart::Measured {
@@ -320,120 +331,7 @@ impl<R: Real> Flight<'_, R> {
             }
             state
         });
-        let inverse_inertia = std::array::from_fn(|c| {
-            L::load(&self.lanes(agent, |draw| {
-                let scale = if first + c < FIRST_ATTITUDE {
-                    draw.mass_scale
-                } else {
-                    draw.inertia_scale
-                };
-                1.0 / (inertia[first + c] * scale)
-            }))
-        });
-        let first_fault = self.lanes(agent, |draw| {
-            later_onsets(campaign, draw)
-                .into_iter()
-                .map(f64::from)
-                .fold(f64::INFINITY, f64::min)
-        });
-        let kappa = L::load(&self.lanes(agent, |draw| draw.kappa));
-        Agent::new(
-            channels,
-            signals,
-            inverse_inertia,
-            kappa,
-            L::load(&first_fault),
-        )
-    }
-
-    fn add_disturbance<L: Lane<Real = R>, const NC: usize>(
-        &self,
-        signals: &mut Signals<L, NC>,
-        disturbance: &Disturbance,
-        index: usize,
-        agent: usize,
-        first: usize,
-    ) {
-        let values = |parameter: usize, c: usize| {
-            self.lanes(agent, |draw| draw.disturbances[index][parameter][first + c])
-        };
-        match disturbance.kind {
-            DisturbanceKind::Constant => {
-                for (c, constant) in signals.constant.iter_mut().enumerate() {
-                    *constant = *constant + L::load(&values(0, c));
-                }
-            }
-            DisturbanceKind::Sine => {
-                let sine: [Sine<L>; NC] = std::array::from_fn(|c| Sine {
-                    amplitude: L::load(&values(0, c)),
-                    phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
-                    advance: self
-                        .advance::<L>(values(1, c).map(|frequency_rad_s| frequency_rad_s / TAU)),
-                });
-                if (0..NC).any(|c| values(0, c).iter().any(|amplitude| *amplitude != 0.0)) {
-                    signals.sines.push(sine);
-                }
-            }
-        }
-    }
-
-    fn add_fault<L: Lane<Real = R>, const NC: usize>(
-        &self,
-        signals: &mut Signals<L, NC>,
-        index: usize,
-        agent: usize,
-        first: usize,
-    ) {
-        let campaign = &self.model.campaign;
-        let fault = &campaign.faults[index];
-        let lanes =
-            |pick: &dyn Fn(&FaultDraw) -> f64| self.lanes(agent, |draw| pick(&draw.faults[index]));
-        if !(0..NC)
-            .any(|c| lanes(&|draw| f64::from(u8::from(draw.strikes[first + c]))).contains(&1.0))
-        {
-            return;
-        }
-        let values =
-            |parameter: usize, c: usize| lanes(&|draw| draw.parameters[parameter][first + c]);
-        let switch = |c: usize| Switch {
-            onset: L::load(&lanes(&|draw| {
-                if draw.strikes[first + c] {
-                    f64::from(campaign.time.onset_step(draw.onset_s))
-                } else {
-                    f64::INFINITY
-                }
-            })),
-            value: L::load(&values(0, c)),
-        };
-        match (fault.kind, fault.target) {
-            (FaultKind::LossOfEffectiveness, _) => signals.losses.push(std::array::from_fn(switch)),
-            (FaultKind::Bias, FaultTarget::Actuator) => {
-                signals.command_biases.push(std::array::from_fn(switch))
-            }
-            (FaultKind::Bias, FaultTarget::Sensor) => {
-                signals.sensor_biases.push(std::array::from_fn(switch))
-            }
-            (FaultKind::SmoothedSquare, _) => {
-                signals.squares.push(std::array::from_fn(|c| Square {
-                    switch: switch(c),
-                    inverse_smoothing: L::load(&values(2, c).map(f64::recip)),
-                    phase: L::turns(&values(3, c).map(|phase_rad| phase_rad / TAU)),
-                    advance: self.advance::<L>(values(1, c).map(f64::recip)),
-                    active: L::number(0.0),
-                }))
-            }
-            (FaultKind::Noise, _) => signals.noises.push(Noise {
-                entry: u32::try_from(index).unwrap_or(u32::MAX),
-                members: std::array::from_fn(|c| member(agent, first + c)),
-                switch: std::array::from_fn(switch),
-                samples: [[L::number(0.0); 4]; NC],
-            }),
-        }
-    }
-
-    /// Turns per half step of frequencies in Hz.
-    fn advance<L: Lane<Real = R>>(&self, frequency_hz: [f64; MAX_WIDTH]) -> L::Turns {
-        L::turns(&frequency_hz.map(|frequency| frequency * self.model.campaign.time.step_s / 2.0))
+        Agent::new(channels, condition)
     }
 
     fn keep<const NC: usize>(
@@ -464,29 +362,10 @@ impl<R: Real> Flight<'_, R> {
             .enumerate()
         {
             for (lane, episode) in self.outcomes.iter_mut().enumerate() {
-                let outcome = &mut episode[agent];
                 for c in 0..NC {
-                    outcome.channels[first + c] = channels[c][lane];
-                    outcome.diverged |= !channels[c][lane].is_finite();
+                    episode[agent].take(first + c, endings[lane], channels[c][lane]);
                 }
-                outcome.diverged |= !endings[lane].finite;
-                outcome.failed_step = outcome
-                    .failed_step
-                    .into_iter()
-                    .chain(endings[lane].failed_step)
-                    .min();
             }
         }
     }
-}
-
-/// The steps at which an agent's faults begin, apart from those that begin with the run.
-#[must_use]
-pub fn later_onsets(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
-    draw.faults
-        .iter()
-        .filter(|fault| fault.occurs())
-        .map(|fault| campaign.time.onset_step(fault.onset_s))
-        .filter(|&step| step > 0)
-        .collect()
 }

@@ -5,9 +5,10 @@
 
 #![expect(
     clippy::needless_range_loop,
-    reason = "a channel is one index of several arrays, as in the shaders to come"
+    reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
+use super::condition::Condition;
 use super::controller::{ChannelGains, OBSERVER, fault_estimates, feedback, step_channel};
 use super::integrator::{Step, Stepped};
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
@@ -16,9 +17,9 @@ use super::plant_uav::{Inputs, Plant, ReferenceRow, Response};
 use super::signal::Signals;
 
 /// Steps between two flushes of the metrics, counted from step 0.
-const FLUSH_STEPS: u32 = 256;
+pub(crate) const FLUSH_STEPS: u32 = 256;
 /// Where an agent that diverged is seen by the others, m or rad.
-const FAR_AWAY: f64 = 1e15;
+pub(crate) const FAR_AWAY: f64 = 1e15;
 
 /// Two numbers per agent that say how it ended, beside its channels' outcomes.
 #[derive(Debug, Clone, Copy)]
@@ -44,13 +45,12 @@ pub(crate) struct Setting<'t, P, R, const NC: usize> {
 
 /// One agent's channels of the group.
 pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) channels: [Stepped<L, NS>; NC],
-    pub(crate) extra: Stepped<L, NX>,
-    pub(crate) signals: Signals<L, NC>,
-    pub(crate) inverse_inertia: [L; NC],
-    pub(crate) kappa: L,
-    /// The step of the first fault that does not begin with the run; infinite if there is none.
-    pub(crate) first_fault: L,
+    channels: [Stepped<L, NS>; NC],
+    extra: Stepped<L, NX>,
+    signals: Signals<L, NC>,
+    inverse_inertia: [L; NC],
+    kappa: L,
+    first_fault: L,
     metrics: [Metrics<L>; NC],
     /// The first step that failed; infinite if none did.
     failed: L,
@@ -93,20 +93,15 @@ pub struct Shown {
 }
 
 impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS, NX> {
-    pub(crate) fn new(
-        channels: [[L; NS]; NC],
-        signals: Signals<L, NC>,
-        inverse_inertia: [L; NC],
-        kappa: L,
-        first_fault: L,
-    ) -> Self {
+    /// An agent at step 0, from its channels' states and what it meets.
+    pub(crate) fn new(channels: [[L; NS]; NC], condition: Condition<L, NC>) -> Self {
         Self {
             channels: channels.map(Stepped::new),
             extra: Stepped::new([L::number(0.0); NX]),
-            signals,
-            inverse_inertia,
-            kappa,
-            first_fault,
+            signals: condition.signals,
+            inverse_inertia: condition.inverse_inertia,
+            kappa: condition.kappa,
+            first_fault: condition.first_fault,
             metrics: [Metrics::new(); NC],
             failed: L::number(f64::INFINITY),
         }

@@ -17,10 +17,10 @@ pub(crate) struct Stepped<L, const N: usize> {
 /// h/6, h/3, h/2 and h of a step h.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step<R> {
-    sixth: R,
-    third: R,
-    half: R,
-    whole: R,
+    pub(crate) sixth: R,
+    pub(crate) third: R,
+    pub(crate) half: R,
+    pub(crate) whole: R,
 }
 
 impl<R: Real> Step<R> {

@@ -20,7 +20,7 @@ pub(crate) const SQRT_HALF_BITS: u32 = 0x3f35_04f3;
 pub(crate) const FOLD_SCALE: f32 = 1.0 / 2_147_483_648.0;
 
 /// sin(pi/2 f) / f in powers of f^2 on [-1, 1]; error 6.7e-9 before rounding.
-const SIN_FOLDED: [f64; 5] = [
+pub(crate) const SIN_FOLDED: [f64; 5] = [
     1.570_796_370_506_286_6,
     -0.645_963_788_032_531_7,
     0.079_689_927_399_158_48,
@@ -28,14 +28,14 @@ const SIN_FOLDED: [f64; 5] = [
     0.000_151_679_312_693_886_46,
 ];
 /// (sin r - r) / r^3 in powers of r^2 on [-pi/2, pi/2]; error 7e-9.
-const SIN: [f64; 4] = [
+pub(crate) const SIN: [f64; 4] = [
     -0.166_666_656_732_559_2,
     0.008_333_242_498_338_223,
     -0.000_198_228_051_885_962_49,
     2.634_924_612_721_079e-6,
 ];
 /// (cos r - 1) / r^2 in powers of r^2 on [-pi/2, pi/2]; error 4e-10.
-const COS: [f64; 5] = [
+pub(crate) const COS: [f64; 5] = [
     -0.5,
     0.041_666_660_457_849_5,
     -0.001_388_865_755_870_938_3,
@@ -43,7 +43,7 @@ const COS: [f64; 5] = [
     -2.630_331_437_103_451e-7,
 ];
 /// atan(q) / q in powers of q^2 on [0, 1]; error 1.4e-8.
-const ATAN: [f64; 9] = [
+pub(crate) const ATAN: [f64; 9] = [
     1.0,
     -0.333_330_929_279_327_4,
     0.199_930_578_470_230_1,
@@ -55,7 +55,7 @@ const ATAN: [f64; 9] = [
     0.002_903_792_308_643_460_3,
 ];
 /// (ln(1 + f) - f + f^2/2) / f^3 in powers of f on [sqrt(1/2) - 1, sqrt(2) - 1]; error 9e-7, times f^3.
-const LN: [f64; 7] = [
+pub(crate) const LN: [f64; 7] = [
     0.333_334_028_720_855_7,
     -0.250_011_295_080_184_94,
     0.199_862_375_855_445_86,
@@ -66,7 +66,7 @@ const LN: [f64; 7] = [
 ];
 /// The rational approximation of tanh that is in wide use (Eigen's generic float kernel): odd numerator and even
 /// denominator, exact to 3 ulp below [`TANH_LIMIT`], beyond which a single cannot tell tanh from 1.
-const TANH_NUMERATOR: [f64; 7] = [
+pub(crate) const TANH_NUMERATOR: [f64; 7] = [
     4.893_524_558_917_86e-3,
     6.372_619_288_754_36e-4,
     1.485_722_357_179_79e-5,
@@ -75,17 +75,17 @@ const TANH_NUMERATOR: [f64; 7] = [
     2.000_187_904_824_77e-13,
     -2.760_768_477_423_55e-16,
 ];
-const TANH_DENOMINATOR: [f64; 4] = [
+pub(crate) const TANH_DENOMINATOR: [f64; 4] = [
     4.893_525_185_543_85e-3,
     2.268_434_632_439_00e-3,
     1.185_347_056_866_54e-4,
     1.198_258_394_667_02e-6,
 ];
-const TANH_LIMIT: f64 = 7.905_311_107_635_498;
+pub(crate) const TANH_LIMIT: f64 = 7.905_311_107_635_498;
 
 /// pi as a sum of a single and a remainder, so that `x - n pi` keeps its digits for a few turns.
-const PI_HIGH: f64 = 3.141_592_741_012_573_2;
-const PI_LOW: f64 = -8.742_277_657_347_586e-8;
+pub(crate) const PI_HIGH: f64 = 3.141_592_741_012_573_2;
+pub(crate) const PI_LOW: f64 = -8.742_277_657_347_586e-8;
 
 /// A fraction of a turn in 64-bit fixed point; whole turns drop out.
 #[expect(

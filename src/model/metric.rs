@@ -179,6 +179,40 @@ impl<L: Lane> Metrics<L> {
     }
 }
 
+impl Metrics<f32> {
+    /// The metrics that the shaders kept: the sums in the order of [`Sums`], with nothing recent left; steps are -1 where
+    /// there is none.
+    pub(crate) fn kept(
+        [
+            square,
+            absolute,
+            effort,
+            actuator_fault,
+            sensor_fault,
+            limited,
+        ]: [f32; 6],
+        [largest, largest_command]: [f32; 2],
+        [outside, outside_before_fault]: [f32; 2],
+    ) -> Self {
+        let total = Sums {
+            square,
+            absolute,
+            effort,
+            actuator_fault,
+            sensor_fault,
+            limited,
+        };
+        Self {
+            recent: Sums::zero(),
+            total,
+            largest,
+            largest_command,
+            outside,
+            outside_before_fault,
+        }
+    }
+}
+
 impl ChannelOutcome {
     /// Whether every sum stayed finite.
     #[must_use]

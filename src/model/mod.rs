@@ -3,16 +3,17 @@
 //! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator` over `plant_uav` and
 //! `controller`, and the sums of `metric`. [`episode`] builds groups from draws and collects their outcomes.
 
+pub(crate) mod condition;
 pub mod controller;
 pub mod episode;
-mod group;
-mod integrator;
+pub(crate) mod group;
+pub(crate) mod integrator;
 pub mod lanes;
-mod math;
+pub(crate) mod math;
 pub mod metric;
 pub mod plant_uav;
 pub mod rng;
-mod signal;
+pub(crate) mod signal;
 #[cfg(target_arch = "x86_64")]
 pub mod simd;
 

@@ -5,7 +5,7 @@
 
 #![expect(
     clippy::needless_range_loop,
-    reason = "a channel is one index of several arrays, as in the shaders to come"
+    reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
 use super::lanes::{Lane, Real};
@@ -99,9 +99,9 @@ pub fn non_inertial(uav: &Uav, rate: [f64; 6]) -> [f64; 6] {
 /// One axis of translation, fully actuated.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis<R> {
-    mass: R,
-    drag: R,
-    gravity: R,
+    pub(crate) mass: R,
+    pub(crate) drag: R,
+    pub(crate) gravity: R,
 }
 
 impl<R: Real> Axis<R> {
@@ -144,9 +144,9 @@ impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
 /// inertias leaves alone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Attitude<R> {
-    inertia: [R; 3],
-    drag: R,
-    gyro: [R; 3],
+    pub(crate) inertia: [R; 3],
+    pub(crate) drag: R,
+    pub(crate) gyro: [R; 3],
 }
 
 impl<R: Real> Attitude<R> {
@@ -214,16 +214,16 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
 /// filter: roll, pitch and their rates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Thrust<R> {
-    attitude: Attitude<R>,
-    mass: R,
-    inverse_mass: R,
-    drag: R,
-    gravity: R,
-    inverse_inertia: [R; 3],
-    filter: R,
-    max_thrust: R,
-    max_torque: R,
-    max_tilt: R,
+    pub(crate) attitude: Attitude<R>,
+    pub(crate) mass: R,
+    pub(crate) inverse_mass: R,
+    pub(crate) drag: R,
+    pub(crate) gravity: R,
+    pub(crate) inverse_inertia: [R; 3],
+    pub(crate) filter: R,
+    pub(crate) max_thrust: R,
+    pub(crate) max_torque: R,
+    pub(crate) max_tilt: R,
 }
 
 impl<R: Real> Thrust<R> {

@@ -2,9 +2,9 @@
 //! 1, 2, 3", SC 2011), addressed and never advanced. What an episode draws depends on (seed, episode, stream, entry,
 //! member, index) alone: not on the batch, the thread, the backend or what was drawn before.
 
-const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
-const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
-const ROUNDS: usize = 10;
+pub(crate) const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
+pub(crate) const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
+pub(crate) const ROUNDS: u32 = 10;
 
 /// Four random words of a 128-bit counter under a 64-bit key.
 #[inline(always)]

@@ -5,7 +5,7 @@
 
 #![expect(
     clippy::needless_range_loop,
-    reason = "a channel is one index of several arrays, as in the shaders to come"
+    reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
 use super::lanes::{Lane, MAX_WIDTH};
@@ -29,7 +29,7 @@ pub(crate) struct Square<L: Lane> {
     /// Turns per half step.
     pub(crate) advance: L::Turns,
     /// The amplitude of this step: zero before the onset.
-    pub(crate) active: L,
+    pub(crate) held: L,
 }
 
 /// A value that is there from a step on.
@@ -133,7 +133,7 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
             }
             self.held_sensor[c] = sensor;
             for square in &mut self.squares {
-                square[c].active = square[c].switch.at(now, zero);
+                square[c].held = square[c].switch.at(now, zero);
             }
         }
     }
@@ -167,7 +167,7 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
                     square.phase = L::turns_add(square.phase, square.advance);
                 }
                 let shape = (L::turns_sin(square.phase) * square.inverse_smoothing).tanh();
-                self.sensor_fault[c] = shape.mul_add(square.active, self.sensor_fault[c]);
+                self.sensor_fault[c] = shape.mul_add(square.held, self.sensor_fault[c]);
             }
         }
     }

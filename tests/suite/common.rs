@@ -1,7 +1,8 @@
 //! What several test modules need.
 
 use std::path::{Path, PathBuf};
-use urts_mc::backend::cpu::{Cpu, Flown, Precision};
+use urts_mc::backend::Flown;
+use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::Campaign;
 use urts_mc::gains::GainSet;
 use urts_mc::tables::Tables;

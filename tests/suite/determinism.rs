@@ -3,7 +3,8 @@
 
 use crate::common::{altered, campaign};
 use std::fs;
-use urts_mc::backend::cpu::{Cpu, Flown, Precision, Simd};
+use urts_mc::backend::Flown;
+use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::gains::GainSet;
 use urts_mc::output::OutputDir;

@@ -31,6 +31,7 @@ mod common;
 
 mod campaigns;
 mod determinism;
+mod gpu;
 mod lanes;
 mod lapack;
 mod model;

@@ -1,0 +1,166 @@
+// Twin of src/model/plant_uav.rs: the UAV of (3) with the feedforward law (9). One invocation answers for one channel; what
+// it needs of its agent's other channels they have published (`seen`).
+
+// Constants of the plant; those that a plant does not use are zero.
+struct Uav {
+    mass: f32,
+    inverse_mass: f32,
+    drag: f32,
+    gravity: f32,
+    inertia: vec4<f32>,
+    inverse_inertia: vec4<f32>,
+    // (J_k - J_j) / J_i of the gyroscopic torque.
+    gyro: vec4<f32>,
+    angular_drag: f32,
+    filter_rad_s: f32,
+    max_thrust: f32,
+    max_torque: f32,
+    max_tilt: f32,
+    unused_0: f32,
+    unused_1: f32,
+    unused_2: f32,
+}
+
+// What acts on the channel at one instant.
+struct Inputs {
+    // r, r', r'' and the feedforward M r'' + H(r, r') of (9).
+    reference: vec4<f32>,
+    // u_fb of (21).
+    feedback: f32,
+    // x and x'.
+    position: f32,
+    velocity: f32,
+    // c + d1 of (12).
+    force: f32,
+}
+
+// How the channel answers.
+struct Response {
+    // x'' - r''.
+    error_acceleration: f32,
+    // The feedback that was really commanded, after filter and limits, before any fault.
+    told: f32,
+    // The command u of (9) after limits and faults.
+    command: f32,
+    // By how much the limits cut the command.
+    excess: f32,
+    // Derivative of the command filter's angle and rate.
+    extra_rate: vec2<f32>,
+}
+
+// The reference of the channel and its rate: (r, r'). Under thrust, roll and pitch follow the command filter.
+fn reference(stage: u32, row: vec4<f32>) -> vec2<f32> {
+    if PLANT == THRUST && (own.channel == 3u || own.channel == 4u) {
+        return vec2(stepped_at(stage, EXTRA), stepped_at(stage, EXTRA + 1u));
+    }
+    return row.xy;
+}
+
+fn axis_respond(inputs: Inputs) -> Response {
+    let demanded = fma(inputs.feedback, setting.uav.mass, inputs.reference.w);
+    let command = fma(demanded, command_gain, command_bias);
+    let force = fma(inputs.velocity, -setting.uav.drag, command + inputs.force);
+    let offset = inputs.reference.z + setting.uav.gravity;
+    let error_acceleration = fma(force, own.inverse_inertia, -offset);
+    return Response(error_acceleration, inputs.feedback, command, 0.0, vec2(0.0));
+}
+
+// Theta'' under a torque per true inertia, (3); the attitude begins with channel `first` of the group.
+fn attitude_acceleration(stage: u32, first: u32, torque: f32, rate: f32) -> f32 {
+    let i = own.channel - first;
+    let net = fma(rate, -setting.uav.angular_drag, torque);
+    let gyroscopic = seen(stage, VELOCITY, first + (i + 1u) % 3u) * seen(stage, VELOCITY, first + (i + 2u) % 3u);
+    return fma(gyroscopic, -own.inertia.z, net * own.inverse_inertia);
+}
+
+fn attitude_respond(stage: u32, inputs: Inputs) -> Response {
+    let demanded = fma(inputs.feedback, own.inertia.x, inputs.reference.w);
+    let command = fma(demanded, command_gain, command_bias);
+    let torque = command + inputs.force;
+    let acceleration = attitude_acceleration(stage, 0u, torque, inputs.velocity);
+    return Response(acceleration - inputs.reference.z, inputs.feedback, command, 0.0, vec2(0.0));
+}
+
+// R(Theta) [0 0 1]', (3).
+fn body_axis(roll: f32, pitch: f32, yaw_sin_cos: vec2<f32>) -> vec3<f32> {
+    let sin_yaw = yaw_sin_cos.x;
+    let cos_yaw = yaw_sin_cos.y;
+    let roll_sin_cos = sin_cos(roll);
+    let pitch_sin_cos = sin_cos(pitch);
+    let forward = pitch_sin_cos.x * roll_sin_cos.y;
+    return vec3(
+        fma(cos_yaw, forward, sin_yaw * roll_sin_cos.x),
+        fma(sin_yaw, forward, -(cos_yaw * roll_sin_cos.x)),
+        pitch_sin_cos.y * roll_sin_cos.y,
+    );
+}
+
+fn clamp(value: f32, low: f32, high: f32) -> f32 {
+    return lane_min(lane_max(value, low), high);
+}
+
+fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
+    let roll = seen(stage, REFERENCE, 3u);
+    let pitch = seen(stage, REFERENCE, 4u);
+    let yaw = seen(stage, REFERENCE, 5u);
+
+    // The force that the position loop demands, (9).
+    let fx = seen(stage, DEMAND, 0u);
+    let fy = seen(stage, DEMAND, 1u);
+    let fz = seen(stage, DEMAND, 2u);
+    let yaw_sin_cos = sin_cos(yaw);
+    // Its direction in the frame turned by the yaw reference is that of the commanded body axis (Remark 11).
+    let ahead = fma(yaw_sin_cos.y, fx, yaw_sin_cos.x * fy);
+    let aside = fma(yaw_sin_cos.y, fy, -(yaw_sin_cos.x * fx));
+    let upright = sqrt(fma(ahead, ahead, fz * fz));
+    let roll_wanted = -atan2(aside, upright);
+    let pitch_wanted = atan2(ahead, fz);
+    let tilt = setting.uav.max_tilt;
+    let roll_command = clamp(roll_wanted, -tilt, tilt);
+    let pitch_command = clamp(pitch_wanted, -tilt, tilt);
+
+    if own.channel < 3u {
+        // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
+        let thrust_wanted = sqrt(fma(fx, fx, fma(fy, fy, fz * fz)));
+        let thrust = clamp(thrust_wanted, 0.0, setting.uav.max_thrust);
+        let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
+        let excess = vec3(pitch_wanted - pitch_command, roll_wanted - roll_command, thrust_wanted - thrust);
+        let told = fma(thrust, commanded_axis[own.channel], -inputs.reference.w) * setting.uav.inverse_mass;
+        let command = fma(seen(stage, DEMAND, own.channel), command_gain, command_bias);
+
+        // What the faults leave of the thrust acts along the true body axis.
+        let applied = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
+        let true_yaw = seen(stage, POSITION, 5u);
+        let true_axis = body_axis(seen(stage, POSITION, 3u), seen(stage, POSITION, 4u), sin_cos(true_yaw));
+        var net = fma(applied, true_axis[own.channel], inputs.force);
+        net = fma(inputs.velocity, -setting.uav.drag, net);
+        let gravity = select(0.0, setting.uav.gravity, own.channel == 2u);
+        let offset = inputs.reference.z + gravity;
+        let error_acceleration = fma(net, own.inverse_inertia, -offset);
+        return Response(error_acceleration, told, command, excess[own.channel], vec2(0.0));
+    }
+
+    let i = own.channel - 3u;
+    // Critically damped command filter: q'' = w^2 (command - q) - 2 w q'.
+    let w = setting.uav.filter_rad_s;
+    let roll_rate = seen(stage, REFERENCE_RATE, 3u);
+    let pitch_rate = seen(stage, REFERENCE_RATE, 4u);
+    let roll_acceleration = (w * (roll_command - roll) - (roll_rate + roll_rate)) * w;
+    let pitch_acceleration = (w * (pitch_command - pitch) - (pitch_rate + pitch_rate)) * w;
+
+    // Torques: demanded along the filtered attitude, then limited.
+    let rates = vec3(roll_rate, pitch_rate, seen(stage, REFERENCE_RATE, 5u));
+    let accelerations = vec3(roll_acceleration, pitch_acceleration, inputs.reference.z);
+    let limit = setting.uav.max_torque;
+    let inertia = own.inertia.x;
+    let gyroscopic = rates[(i + 1u) % 3u] * rates[(i + 2u) % 3u] * own.inertia.z;
+    let non_inertial = fma(gyroscopic, inertia, rates[i] * setting.uav.angular_drag);
+    let wanted = fma(accelerations[i] + inputs.feedback, inertia, non_inertial);
+    let limited = clamp(wanted, -limit, limit);
+    let told = fma(limited - non_inertial, own.inertia.y, -accelerations[i]);
+    let command = fma(limited, command_gain, command_bias);
+    let torque = command + inputs.force;
+    let angular = attitude_acceleration(stage, 3u, torque, inputs.velocity);
+    let extra_rate = vec2(rates[i], accelerations[i]);
+    return Response(angular - accelerations[i], told, command, wanted - limited, extra_rate);
+}

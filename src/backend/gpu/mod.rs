@@ -1,0 +1,114 @@
+//! The GPU backend: batches of episodes through the compute shaders of `shaders/`, single precision. This folder alone
+//! names wgpu.
+//!
+//! An invocation is one channel of one agent in one episode under one controller; a workgroup holds the channels that act on
+//! each other, of whole teams. All controllers of a batch fly in one dispatch, on the same draws. The state stays on the
+//! device while the steps are dispatched in spans short enough for a display driver; neither the spans nor the batches show in
+//! the result. shaders/README.md counts registers, bytes and operations.
+
+mod adapter;
+mod device;
+mod flight;
+pub(crate) mod shader;
+pub(crate) mod words;
+
+pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
+pub use device::Gpu;
+pub use flight::{GpuFlyer, GpuTimes, Tuning};
+
+use thiserror::Error;
+
+/// Why a GPU cannot fly episodes, or cannot go on.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum GpuError {
+    /// There is no hardware GPU.
+    #[error(
+        "no hardware GPU found ({}); use --backend cpu, or name a software adapter with --adapter",
+        listed(found)
+    )]
+    NoHardware {
+        /// Names of the adapters that there are.
+        found: Vec<String>,
+    },
+    /// No adapter has this name.
+    #[error(
+        "--adapter {name}: no adapter of this name ({}); `urts-mc devices` explains them",
+        listed(found)
+    )]
+    NoSuchAdapter {
+        /// The name.
+        name: String,
+        /// Names of the adapters that there are.
+        found: Vec<String>,
+    },
+    /// The adapter gives no device.
+    #[error(
+        "{adapter}: the driver gives no device ({reason}); use another adapter or --backend cpu"
+    )]
+    NoDevice {
+        /// The adapter.
+        adapter: String,
+        /// What the driver says.
+        reason: String,
+    },
+    /// The campaign does not fit the adapter.
+    #[error("{adapter}: {what} needs {needed}, the adapter's limit is {limit}; use --backend cpu")]
+    TooLarge {
+        /// The adapter.
+        adapter: String,
+        /// What is too large.
+        what: &'static str,
+        /// How much it needs.
+        needed: u64,
+        /// How much there is.
+        limit: u64,
+    },
+    /// The driver refuses the shaders.
+    #[error(
+        "{adapter}: the shaders do not compile ({reason}); use --backend cpu, and please report this"
+    )]
+    Shader {
+        /// The adapter.
+        adapter: String,
+        /// What the compiler says.
+        reason: String,
+    },
+    /// Not even one block of episodes fits the device's memory.
+    #[error(
+        "{adapter}: out of memory with buffers of {bytes} bytes for {episodes} episodes; use --backend cpu"
+    )]
+    OutOfMemory {
+        /// The adapter.
+        adapter: String,
+        /// What was asked for, bytes.
+        bytes: u64,
+        /// Episodes that it was for.
+        episodes: usize,
+    },
+    /// The device went away.
+    #[error("{adapter}: the device was lost ({reason}); use --backend cpu, or run again")]
+    Lost {
+        /// The adapter.
+        adapter: String,
+        /// What the driver says.
+        reason: String,
+    },
+    /// Something that should not happen.
+    #[error(
+        "{adapter}: the driver reports an error ({reason}); use --backend cpu, and please report this"
+    )]
+    Driver {
+        /// The adapter.
+        adapter: String,
+        /// What it says.
+        reason: String,
+    },
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() {
+        "no adapter at all".to_string()
+    } else {
+        format!("there is {}", names.join(", "))
+    }
+}

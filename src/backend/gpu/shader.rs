@@ -1,0 +1,237 @@
+//! The WGSL text of a group of channels: the files of `shaders/`, joined, under constants that come from here and from
+//! `src/model`, so that every number and size exists once.
+
+use super::words::{Counts, OUTCOME_WORDS, SHOWN_WORDS, Words};
+use crate::campaign::FIRST_ATTITUDE;
+use crate::draw::MEMBERS_PER_AGENT;
+use crate::model::controller::{FTC_STATES, OBSERVER};
+use crate::model::episode::PlantKind;
+use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
+use crate::model::math;
+use crate::model::rng::{self, Stream};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
+use std::fmt::Write;
+
+/// The files, in the order of what builds on what.
+const FILES: [&str; 10] = [
+    include_str!("../../../shaders/lanes.wgsl"),
+    include_str!("../../../shaders/math.wgsl"),
+    include_str!("../../../shaders/rng.wgsl"),
+    include_str!("../../../shaders/integrator.wgsl"),
+    include_str!("../../../shaders/controller.wgsl"),
+    include_str!("../../../shaders/plant_uav.wgsl"),
+    include_str!("../../../shaders/signal.wgsl"),
+    include_str!("../../../shaders/metric.wgsl"),
+    include_str!("../../../shaders/group.wgsl"),
+    include_str!("../../../shaders/episode.wgsl"),
+];
+
+/// States that the command filter adds to a channel under thrust: its angle and rate.
+const FILTER_STATES: usize = 2;
+
+/// What the text of a group's shader depends on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Shape {
+    pub(crate) plant: PlantKind,
+    /// Channels of the group.
+    pub(crate) channels: usize,
+    /// Agents of an episode.
+    pub(crate) team: usize,
+    /// Episodes of a workgroup.
+    pub(crate) lanes: usize,
+    /// Whether the controller is a fault-tolerant one.
+    pub(crate) ftc: bool,
+    /// Whether the agents act on each other.
+    pub(crate) coupled: bool,
+    /// Whether the observers start from what is measured.
+    pub(crate) observer_measured: bool,
+    /// Signals of each kind.
+    pub(crate) counts: Counts,
+    /// The campaign's number of each noise.
+    pub(crate) noise_entries: Vec<u32>,
+}
+
+impl Shape {
+    /// Invocations of a workgroup.
+    pub(crate) fn workgroup(&self) -> usize {
+        self.channels * self.team * self.lanes
+    }
+
+    /// States of a channel: those of the largest controller and, under thrust, the command filter's angle and rate.
+    pub(crate) fn states(&self) -> usize {
+        match self.plant {
+            PlantKind::Thrust => FTC_STATES + FILTER_STATES,
+            PlantKind::Axis | PlantKind::Attitude => FTC_STATES,
+        }
+    }
+
+    /// Kinds of channels, each with gains of its own.
+    pub(crate) fn kinds(&self) -> usize {
+        match self.plant {
+            PlantKind::Thrust => 2,
+            PlantKind::Axis | PlantKind::Attitude => 1,
+        }
+    }
+
+    /// Numbers that a channel shows to others.
+    pub(crate) fn shared(&self) -> usize {
+        match self.plant {
+            PlantKind::Axis => 1,
+            PlantKind::Attitude => 2,
+            PlantKind::Thrust => 4,
+        }
+    }
+
+    /// Bytes of workgroup memory; [`shaders/group.wgsl`] says why twice.
+    pub(crate) fn shared_bytes(&self) -> usize {
+        2 * 4 * self.shared() * self.workgroup()
+    }
+
+    /// The place of an agent's channel in a workgroup.
+    pub(crate) fn place(&self, channel: usize, agent: usize, lane: usize) -> usize {
+        (channel * self.team + agent) * self.lanes + lane
+    }
+
+    /// The whole text.
+    pub(crate) fn text(&self) -> String {
+        let mut text = self.constants();
+        for file in FILES {
+            text.push('\n');
+            text.push_str(file);
+        }
+        text
+    }
+
+    fn constants(&self) -> String {
+        let mut text = Constants::default();
+        for (k, plant) in [PlantKind::Axis, PlantKind::Attitude, PlantKind::Thrust]
+            .into_iter()
+            .enumerate()
+        {
+            text.count(&format!("{plant:?}").to_uppercase(), k);
+        }
+        text.name("PLANT", &format!("{:?}", self.plant).to_uppercase());
+        text.count("NC", self.channels);
+        text.count("TEAM", self.team);
+        text.count("LANES", self.lanes);
+        text.count("WORKGROUP", self.workgroup());
+        text.count("KINDS", self.kinds());
+        text.count("FIRST_ATTITUDE", FIRST_ATTITUDE);
+        text.flag("COUPLED", self.coupled);
+        text.flag("FTC", self.ftc);
+        text.flag("LIMITED", self.plant == PlantKind::Thrust);
+        text.flag("OBSERVER_MEASURED", self.observer_measured);
+
+        text.count("OBSERVER", OBSERVER);
+        text.count("EXTRA", FTC_STATES);
+        text.count("STATES", FTC_STATES + FILTER_STATES);
+        text.count("FLUSH_STEPS", FLUSH_STEPS as usize);
+        text.number("FAR_AWAY", FAR_AWAY);
+        text.number("MAX", f64::from(f32::MAX));
+        text.word("NEVER", u32::MAX);
+
+        text.count("SHARED", self.shared());
+        for (name, slot) in [
+            ("POSITION", 0),
+            ("VELOCITY", 1),
+            ("COMMAND_BIAS", 1),
+            ("REFERENCE", 2),
+            ("DEMAND", 2),
+            ("REFERENCE_RATE", 3),
+            ("COMMAND_GAIN", 3),
+        ] {
+            text.count(name, slot);
+        }
+        for (name, word) in self.words().named() {
+            text.count(name, word);
+        }
+        text.count("SHOWN", SHOWN_WORDS);
+        text.count("OUTCOME_WORDS", OUTCOME_WORDS);
+        let entries: Vec<String> = self
+            .noise_entries
+            .iter()
+            .chain((self.noise_entries.is_empty()).then_some(&0))
+            .map(|entry| format!("{entry}u"))
+            .collect();
+        text.name("NOISE_ENTRIES", &format!("array({})", entries.join(", ")));
+
+        text.word("ROUNDS", rng::ROUNDS);
+        text.words("MULTIPLIERS", rng::MULTIPLIERS);
+        text.words("WEYL", rng::WEYL);
+        text.count("STREAM_NOISE", Stream::Noise as usize);
+        text.count("MEMBERS_PER_AGENT", MEMBERS_PER_AGENT);
+
+        text.number("UNIT_SPACING", math::UNIT_SPACING);
+        text.word("QUARTER_TURN", math::QUARTER_TURN);
+        text.word("SIGN_BIT", math::SIGN_BIT);
+        text.word("MANTISSA_BITS", math::MANTISSA_BITS);
+        text.word("SQRT_HALF_BITS", math::SQRT_HALF_BITS);
+        text.number("FOLD_SCALE", f64::from(math::FOLD_SCALE));
+        text.number("MIN_POSITIVE", f64::from(f32::MIN_POSITIVE));
+        text.number("PI", PI);
+        text.number("FRAC_PI_2", FRAC_PI_2);
+        text.number("FRAC_1_PI", FRAC_1_PI);
+        text.number("LN_2", LN_2);
+        text.number("PI_HIGH", math::PI_HIGH);
+        text.number("PI_LOW", math::PI_LOW);
+        text.number("TANH_LIMIT", math::TANH_LIMIT);
+        text.numbers("SIN_FOLDED", &math::SIN_FOLDED);
+        text.numbers("SIN", &math::SIN);
+        text.numbers("COS", &math::COS);
+        text.numbers("ATAN", &math::ATAN);
+        text.numbers("LN", &math::LN);
+        text.numbers("TANH_NUMERATOR", &math::TANH_NUMERATOR);
+        text.numbers("TANH_DENOMINATOR", &math::TANH_DENOMINATOR);
+        text.0
+    }
+
+    /// Where a channel's words are.
+    pub(crate) fn words(&self) -> Words {
+        Words::new(self.counts, self.states())
+    }
+}
+
+/// Declarations of constants, one a line.
+#[derive(Default)]
+struct Constants(String);
+
+impl Constants {
+    fn name(&mut self, name: &str, value: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "const {name} = {value};");
+    }
+
+    fn count(&mut self, name: &str, value: usize) {
+        self.name(name, &format!("{value}u"));
+    }
+
+    fn word(&mut self, name: &str, value: u32) {
+        self.name(name, &format!("{value:#x}u"));
+    }
+
+    fn words(&mut self, name: &str, [x, y]: [u32; 2]) {
+        self.name(name, &format!("vec2({x:#x}u, {y:#x}u)"));
+    }
+
+    fn flag(&mut self, name: &str, value: bool) {
+        self.name(name, &value.to_string());
+    }
+
+    fn number(&mut self, name: &str, value: f64) {
+        self.name(name, &single(value));
+    }
+
+    fn numbers(&mut self, name: &str, values: &[f64]) {
+        let values: Vec<String> = values.iter().map(|&value| single(value)).collect();
+        self.name(name, &format!("array({})", values.join(", ")));
+    }
+}
+
+/// The nearest single, in the shortest digits that mean no other.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to single precision is what this does"
+)]
+fn single(value: f64) -> String {
+    format!("{:?}f", value as f32)
+}

@@ -1,0 +1,481 @@
+//! What travels to and from the shaders of a group of channels, as 32-bit words: the setting, the draws, the outcomes.
+
+use super::shader::Shape;
+use crate::campaign::Campaign;
+use crate::draw::Episode;
+use crate::model::Shown;
+use crate::model::condition::{Block, Condition, Entries};
+use crate::model::controller::ChannelGains;
+use crate::model::episode::{AgentOutcome, Controller, Part, PlantKind};
+use crate::model::group::Ending;
+use crate::model::integrator::Step;
+use crate::model::metric::{ChannelOutcome, Limits, Metrics};
+use crate::model::plant_uav::{Attitude, Axis, Thrust};
+use crate::model::rng::key;
+use crate::model::signal::{Signals, Switch};
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+
+/// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums.
+pub(crate) const OUTCOME_WORDS: usize = 12;
+/// Words of what a channel shows: the fields of [`Shown`].
+pub(crate) const SHOWN_WORDS: usize = 10;
+/// A step that never comes.
+const NEVER: u32 = u32::MAX;
+/// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance.
+const FIXED_WORDS: usize = 8;
+
+/// How many signals of each kind a channel has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Counts {
+    losses: usize,
+    command_biases: usize,
+    sensor_biases: usize,
+    noises: usize,
+    squares: usize,
+    sines: usize,
+}
+
+impl Counts {
+    /// The signals of a campaign's agents; all have the same, if listed as [`Entries::Possible`].
+    pub(crate) fn of<const NC: usize>(signals: &Signals<f32, NC>) -> Self {
+        Self {
+            losses: signals.losses.len(),
+            command_biases: signals.command_biases.len(),
+            sensor_biases: signals.sensor_biases.len(),
+            noises: signals.noises.len(),
+            squares: signals.squares.len(),
+            sines: signals.sines.len(),
+        }
+    }
+
+    fn switches(self) -> usize {
+        self.losses + self.command_biases + self.sensor_biases + self.noises + self.squares
+    }
+}
+
+/// Where the words of a channel are, in its draw and in its state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Words {
+    counts: Counts,
+    states: usize,
+}
+
+impl Words {
+    pub(crate) fn new(counts: Counts, states: usize) -> Self {
+        Self { counts, states }
+    }
+
+    /// Words of a draw.
+    pub(crate) fn drawn(self) -> usize {
+        FIXED_WORDS + 2 * self.counts.switches() + 3 * (self.counts.sines + self.counts.squares)
+    }
+
+    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise.
+    pub(crate) fn stored(self) -> usize {
+        17 + self.states + 4 * self.counts.noises
+    }
+
+    /// Every place and count by its name in the shaders. Switches have two words each, and are counted through.
+    pub(crate) fn named(self) -> Vec<(&'static str, usize)> {
+        let counts = self.counts;
+        let command_biases = counts.losses;
+        let sensor_biases = command_biases + counts.command_biases;
+        let noises = sensor_biases + counts.sensor_biases;
+        let squares = noises + counts.noises;
+        let sines = FIXED_WORDS + 2 * counts.switches();
+        vec![
+            ("EPISODE", 0),
+            ("INTEGRAL", 1),
+            ("ERROR", 2),
+            ("ERROR_RATE", 3),
+            ("INVERSE_INERTIA", 4),
+            ("KAPPA", 5),
+            ("FIRST_FAULT", 6),
+            ("CONSTANT", 7),
+            ("SWITCHES", FIXED_WORDS),
+            ("LOSSES", 0),
+            ("COMMAND_BIASES", command_biases),
+            ("SENSOR_BIASES", sensor_biases),
+            ("NOISES", noises),
+            ("SQUARE_SWITCHES", squares),
+            ("SINES", sines),
+            ("SQUARES", sines + 3 * counts.sines),
+            ("DRAWN_WORDS", self.drawn()),
+            ("N_SWITCHES", counts.switches()),
+            ("N_LOSSES", counts.losses),
+            ("N_COMMAND_BIASES", counts.command_biases),
+            ("N_SENSOR_BIASES", counts.sensor_biases),
+            ("N_NOISES", counts.noises),
+            ("N_SQUARES", counts.squares),
+            ("N_SINES", counts.sines),
+            ("FAILED", 0),
+            ("OUTSIDE", 1),
+            ("OUTSIDE_BEFORE_FAULT", 2),
+            ("LARGEST", 3),
+            ("LARGEST_COMMAND", 4),
+            ("RECENT", 5),
+            ("TOTALS", 11),
+            ("CHANNEL", 17),
+            ("SAMPLES", 17 + self.states),
+            ("STORED_WORDS", self.stored()),
+        ]
+    }
+}
+
+/// Twin of `Span` in shaders/episode.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Span {
+    pub(crate) first: u32,
+    pub(crate) until: u32,
+    pub(crate) table_first: u32,
+    pub(crate) output_first: u32,
+}
+
+/// Twin of `Uav` in shaders/plant_uav.wgsl.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct UavWords {
+    pub(crate) mass: f32,
+    pub(crate) inverse_mass: f32,
+    pub(crate) drag: f32,
+    pub(crate) gravity: f32,
+    pub(crate) inertia: [f32; 4],
+    pub(crate) inverse_inertia: [f32; 4],
+    pub(crate) gyro: [f32; 4],
+    pub(crate) angular_drag: f32,
+    pub(crate) filter_rad_s: f32,
+    pub(crate) max_thrust: f32,
+    pub(crate) max_torque: f32,
+    pub(crate) max_tilt: f32,
+    pub(crate) unused: [f32; 3],
+}
+
+/// Twin of `ChannelGains` in shaders/controller.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct GainsWords {
+    pub(crate) feedback: [f32; 8],
+    pub(crate) injection: [[f32; 4]; 7],
+    pub(crate) smoothing: [f32; 4],
+    pub(crate) sensor_fault_input: [f32; 4],
+}
+
+/// Twin of `Setting` in shaders/episode.wgsl, up to its arrays: limits, gains.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SettingHead {
+    pub(crate) seed: [u32; 2],
+    pub(crate) settle_step: u32,
+    pub(crate) first_channel: u32,
+    pub(crate) h: [f32; 4],
+    pub(crate) uav: UavWords,
+}
+
+fn four<const N: usize>(values: [f32; N]) -> [f32; 4] {
+    std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
+}
+
+impl From<Axis<f32>> for UavWords {
+    fn from(axis: Axis<f32>) -> Self {
+        Self {
+            mass: axis.mass,
+            drag: axis.drag,
+            gravity: axis.gravity,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<Attitude<f32>> for UavWords {
+    fn from(attitude: Attitude<f32>) -> Self {
+        Self {
+            inertia: four(attitude.inertia),
+            gyro: four(attitude.gyro),
+            angular_drag: attitude.drag,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<Thrust<f32>> for UavWords {
+    fn from(thrust: Thrust<f32>) -> Self {
+        Self {
+            mass: thrust.mass,
+            inverse_mass: thrust.inverse_mass,
+            drag: thrust.drag,
+            gravity: thrust.gravity,
+            inverse_inertia: four(thrust.inverse_inertia),
+            filter_rad_s: thrust.filter,
+            max_thrust: thrust.max_thrust,
+            max_torque: thrust.max_torque,
+            max_tilt: thrust.max_tilt,
+            ..Self::from(thrust.attitude)
+        }
+    }
+}
+
+impl From<&ChannelGains<f32>> for GainsWords {
+    fn from(gains: &ChannelGains<f32>) -> Self {
+        Self {
+            feedback: std::array::from_fn(|k| gains.feedback.get(k).copied().unwrap_or_default()),
+            injection: gains.injection.map(four),
+            smoothing: four(gains.smoothing),
+            sensor_fault_input: four(gains.sensor_fault_input),
+        }
+    }
+}
+
+/// The bytes of a group's `Setting` under a controller.
+pub(crate) fn setting(
+    campaign: &Campaign,
+    part: &Part<f32>,
+    controller: &Controller<f32>,
+) -> Vec<u8> {
+    let uav = &campaign.uav;
+    let h = Step::<f32>::new(campaign.time.step_s);
+    let head = SettingHead {
+        seed: key(campaign.seed),
+        settle_step: campaign.time.settle_step,
+        first_channel: word(part.channels.start),
+        h: [h.sixth, h.third, h.half, h.whole],
+        uav: match part.plant {
+            PlantKind::Axis => Axis::new(uav, part.channels.start).into(),
+            PlantKind::Attitude => Attitude::new(uav).into(),
+            PlantKind::Thrust => Thrust::new(uav).into(),
+        },
+    };
+    let mut bytes = bytemuck::bytes_of(&head).to_vec();
+    for channel in part.channels.clone() {
+        let verdict = &campaign.verdict;
+        let limits = Limits::<f32>::new(verdict.max_error[channel], verdict.settled_error[channel]);
+        bytes.extend(bytemuck::bytes_of(&[
+            limits.max_error,
+            limits.settled_error,
+            0.0,
+            0.0,
+        ]));
+    }
+    let [position, attitude] = &controller.gains;
+    let gains: &[&ChannelGains<f32>] = match part.plant {
+        PlantKind::Axis => &[position],
+        PlantKind::Attitude => &[attitude],
+        PlantKind::Thrust => &[position, attitude],
+    };
+    for &gains in gains {
+        bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
+    }
+    bytes
+}
+
+/// The signals of a group's channels, which are the same for every agent and episode of the campaign.
+pub(crate) fn signals<const NC: usize>(
+    campaign: &Campaign,
+    first: usize,
+    episode: &Episode,
+) -> (Counts, Vec<u32>) {
+    let condition: Condition<f32, NC> = Block {
+        campaign,
+        episodes: std::slice::from_ref(episode),
+    }
+    .condition(0, first, Entries::Possible);
+    let entries = condition.signals.noises.iter().map(|noise| noise.entry);
+    (Counts::of(&condition.signals), entries.collect())
+}
+
+/// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up with
+/// its last episode.
+pub(crate) fn draws(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    episodes: &[Episode],
+) -> Vec<u32> {
+    match shape.plant {
+        PlantKind::Axis => draws_of::<1>(campaign, shape, first, episodes),
+        PlantKind::Attitude => draws_of::<3>(campaign, shape, first, episodes),
+        PlantKind::Thrust => draws_of::<6>(campaign, shape, first, episodes),
+    }
+}
+
+fn draws_of<const NC: usize>(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    episodes: &[Episode],
+) -> Vec<u32> {
+    let (workgroup, words) = (shape.workgroup(), shape.words().drawn());
+    let blocks = episodes.len().div_ceil(shape.lanes);
+    let mut all = vec![0; blocks * words * workgroup];
+    all.par_chunks_mut(words * workgroup)
+        .zip(episodes.par_chunks(shape.lanes))
+        .for_each(|(out, episodes)| {
+            for lane in 0..shape.lanes {
+                let episode = &episodes[lane.min(episodes.len() - 1)];
+                let block = Block {
+                    campaign,
+                    episodes: std::slice::from_ref(episode),
+                };
+                for agent in 0..shape.team {
+                    let condition: Condition<f32, NC> =
+                        block.condition(agent, first, Entries::Possible);
+                    for channel in 0..NC {
+                        let place = shape.place(channel, agent, lane);
+                        for (k, word) in drawn(episode.index, &condition, channel).enumerate() {
+                            out[k * workgroup + place] = word;
+                        }
+                    }
+                }
+            }
+        });
+    all
+}
+
+/// The words of one channel's draw, in the order of [`Words::named`].
+fn drawn<const NC: usize>(
+    episode: u32,
+    condition: &Condition<f32, NC>,
+    c: usize,
+) -> impl Iterator<Item = u32> {
+    let signals = &condition.signals;
+    let [integral, error, rate] = condition.initial[c].map(f32::to_bits);
+    let switch = |switch: Switch<f32>| [step(switch.onset), switch.value.to_bits()];
+    [
+        episode,
+        integral,
+        error,
+        rate,
+        condition.inverse_inertia[c].to_bits(),
+        condition.kappa.to_bits(),
+        step(condition.first_fault),
+        signals.constant[c].to_bits(),
+    ]
+    .into_iter()
+    .chain(
+        [
+            &signals.losses,
+            &signals.command_biases,
+            &signals.sensor_biases,
+        ]
+        .into_iter()
+        .flatten()
+        .flat_map(move |switches| switch(switches[c])),
+    )
+    .chain(
+        signals
+            .noises
+            .iter()
+            .flat_map(move |noise| switch(noise.switch[c])),
+    )
+    .chain(
+        signals
+            .squares
+            .iter()
+            .flat_map(move |square| switch(square[c].switch)),
+    )
+    .chain(
+        signals
+            .sines
+            .iter()
+            .map(move |sine| sine[c])
+            .flat_map(|sine| [sine.amplitude.to_bits(), sine.phase, sine.advance]),
+    )
+    .chain(
+        signals
+            .squares
+            .iter()
+            .map(move |square| square[c])
+            .flat_map(|square| {
+                [
+                    square.inverse_smoothing.to_bits(),
+                    square.phase,
+                    square.advance,
+                ]
+            }),
+    )
+}
+
+/// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into the
+/// outcomes of each episode's agents.
+pub(crate) fn take_outcomes<'a>(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    words: &[u32],
+    outcomes: impl Iterator<Item = &'a mut Vec<AgentOutcome>>,
+) {
+    let time = campaign.time;
+    let workgroup = shape.workgroup();
+    for (index, agents) in outcomes.enumerate() {
+        let (block, lane) = (index / shape.lanes, index % shape.lanes);
+        let words = &words[block * OUTCOME_WORDS * workgroup..];
+        for (agent, outcome) in agents.iter_mut().enumerate() {
+            for channel in 0..shape.channels {
+                let place = shape.place(channel, agent, lane);
+                let word = |k: usize| words[k * workgroup + place];
+                let number = |k: usize| f32::from_bits(word(k));
+                let ending = Ending {
+                    failed_step: Some(word(0)).filter(|&step| step != NEVER),
+                    finite: word(1) != 0,
+                };
+                let metrics = Metrics::kept(
+                    std::array::from_fn(|k| number(6 + k)),
+                    [number(4), number(5)],
+                    [last_step(word(2)), last_step(word(3))],
+                );
+                let mut taken = [ChannelOutcome::default()];
+                metrics.outcomes(
+                    time.steps,
+                    time.steps.saturating_sub(time.settle_step),
+                    time.step_s,
+                    &mut taken,
+                );
+                outcome.take(first + channel, ending, taken[0]);
+            }
+        }
+    }
+}
+
+/// What a channel shows, from its words `[word][channel][agent][episode]`.
+pub(crate) fn shown(words: &[u32], shape: &Shape, place: usize) -> Shown {
+    let number = |k: usize| f64::from(f32::from_bits(words[k * shape.workgroup() + place]));
+    let [r, x, e, e_rate, e_hat, f1, f1_hat, f2, f2_hat, u] = std::array::from_fn(number);
+    Shown {
+        r,
+        x,
+        e,
+        e_rate,
+        e_hat,
+        f1,
+        f1_hat,
+        f2,
+        f2_hat,
+        u,
+    }
+}
+
+/// A step number as the shaders count it.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a step number, or infinity"
+)]
+fn step(step: f32) -> u32 {
+    if step.is_finite() { step as u32 } else { NEVER }
+}
+
+/// A last step as the lanes count it: -1 if there is none.
+#[expect(
+    clippy::cast_possible_wrap,
+    clippy::cast_precision_loss,
+    reason = "a step number below 2^24, or -1"
+)]
+fn last_step(word: u32) -> f32 {
+    word as i32 as f32
+}
+
+/// A small count as a word.
+pub(crate) fn word(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
