@@ -219,4 +219,5 @@ fn finish(
     for (var k = 0u; k < 6u; k++) {
         output[first + (6u + k) * WORKGROUP] = stored(TOTALS + k);
     }
+    output[first + 12u * WORKGROUP] = drawn(EPISODE);
 }

@@ -1,5 +1,6 @@
 //! The commands.
 
+use crate::failure::{Code, Failure};
 use crate::show;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -7,14 +8,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
-use std::process;
 use std::time::Duration;
 use urts_mc::backend::cpu::{Precision, Simd};
+use urts_mc::backend::gpu::{Tuning, adapters};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::{GainSet, GainsError};
+use urts_mc::flight::{Backend, Settings};
+use urts_mc::gains::GainSet;
 use urts_mc::output::{OutputDir, OutputError};
-use urts_mc::replay::{ReplayError, replay};
-use urts_mc::run::{RunError, Settings, run};
+use urts_mc::replay::replay;
+use urts_mc::run::{Extras, run};
 use urts_mc::synthesis::{Preset, synthesize};
 
 /// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
@@ -38,6 +40,8 @@ enum Command {
     Synthesize(SynthesizeArguments),
     /// Fly one episode of a run again and write its trajectories
     Replay(ReplayArguments),
+    /// List the GPUs, and what --backend auto makes of them
+    Devices(DevicesArguments),
     /// Print the JSON Schema of the campaign file
     Schema,
 }
@@ -58,12 +62,21 @@ struct Overrides {
 struct RunArguments {
     #[command(flatten)]
     overrides: Overrides,
-    /// Number format of the episode loop; f64 is the reference
+    /// Where to fly: auto takes a hardware GPU if there is one and the CPU otherwise
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendChoice,
+    /// The GPU whose name contains this; the only way to a software one
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Number format of the episode loop; f64 is the reference, on the CPU
     #[arg(long, value_enum, default_value = "f32")]
     precision: PrecisionChoice,
-    /// Layout of single-precision episodes; the result is the same for avx2 and avx512
+    /// Layout of the CPU's single-precision episodes; the result is the same for avx2 and avx512
     #[arg(long, value_enum, default_value = "auto")]
     simd: SimdChoice,
+    /// Fly N random episodes again on the CPU in f64 and fail if they differ [default: 32 on a GPU, 0 on the CPU]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    cross_check: Option<u32>,
     /// Threads; 0 takes all cores. The result does not depend on it
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
     threads: u16,
@@ -85,6 +98,13 @@ struct RunArguments {
 struct CheckArguments {
     #[command(flatten)]
     overrides: Overrides,
+    /// Print as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct DevicesArguments {
     /// Print as JSON
     #[arg(long)]
     json: bool,
@@ -124,114 +144,25 @@ struct ReplayArguments {
     overwrite: bool,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BackendChoice {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum PrecisionChoice {
     F32,
     F64,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SimdChoice {
     Auto,
     Scalar,
     Avx2,
     Avx512,
-}
-
-/// How the program ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Code {
-    Done = 0,
-    Other = 1,
-    Usage = 2,
-    Synthesis = 3,
-    Unmet = 4,
-}
-
-impl From<Code> for process::ExitCode {
-    fn from(code: Code) -> Self {
-        Self::from(code as u8)
-    }
-}
-
-/// An error and the exit code that it means.
-#[derive(Debug)]
-pub(crate) struct Failure {
-    /// What went wrong.
-    pub(crate) error: anyhow::Error,
-    /// How the program ends.
-    pub(crate) code: Code,
-}
-
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        let error = error.into();
-        Self {
-            code: code_of(&error),
-            error: anyhow::Error::msg(said_once(&error)),
-        }
-    }
-}
-
-impl Failure {
-    fn usage(message: String) -> Self {
-        Self {
-            error: anyhow::Error::msg(message),
-            code: Code::Usage,
-        }
-    }
-}
-
-/// An error and its causes, each once: some errors quote their cause, others leave it to whoever reports them.
-fn said_once(error: &anyhow::Error) -> String {
-    error
-        .chain()
-        .map(ToString::to_string)
-        .reduce(|said, cause| {
-            if said.contains(&cause) {
-                said
-            } else {
-                format!("{said}: {cause}")
-            }
-        })
-        .unwrap_or_default()
-}
-
-fn code_of(error: &anyhow::Error) -> Code {
-    let of_gains = |error: &GainsError| {
-        if error.is_usage() {
-            Code::Usage
-        } else {
-            Code::Synthesis
-        }
-    };
-    let of_output = |error: &OutputError| {
-        if error.is_usage() {
-            Code::Usage
-        } else {
-            Code::Other
-        }
-    };
-    if error.is::<urts_mc::campaign::CampaignError>() {
-        return Code::Usage;
-    }
-    match error.downcast_ref() {
-        Some(RunError::Gains(error)) => return of_gains(error),
-        Some(RunError::Output(error)) => return of_output(error),
-        Some(RunError::Threads { .. }) => return Code::Usage,
-        _ => {}
-    }
-    match error.downcast_ref() {
-        Some(ReplayError::Run(error)) => return of_output(error),
-        Some(ReplayError::Gains(error)) => return of_gains(error),
-        Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
-        None => {}
-    }
-    error
-        .downcast_ref()
-        .map(of_gains)
-        .or_else(|| error.downcast_ref().map(of_output))
-        .unwrap_or(Code::Other)
 }
 
 /// Carries out a command.
@@ -244,6 +175,7 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
         Command::Check(arguments) => check_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
+        Command::Devices(arguments) => devices_command(&arguments),
         Command::Schema => {
             print_json(&Campaign::schema())?;
             Ok(Code::Done)
@@ -262,36 +194,20 @@ impl Overrides {
 
 fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     let campaign = arguments.overrides.load()?;
-    let simd = match arguments.simd {
-        SimdChoice::Auto => None,
-        SimdChoice::Scalar => Some(Simd::Scalar),
-        SimdChoice::Avx2 => Some(Simd::Avx2),
-        SimdChoice::Avx512 => Some(Simd::Avx512),
-    };
-    if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
-        let name = format!("{simd:?}").to_lowercase();
-        return Err(Failure::usage(format!(
-            "--simd {name}: this processor lacks it; use auto"
-        )));
-    }
-    let precision = match arguments.precision {
-        PrecisionChoice::F32 => Precision::F32,
-        PrecisionChoice::F64 => Precision::F64,
-    };
-    let settings = Settings {
-        precision,
-        simd,
-        threads: usize::from(arguments.threads),
-    };
+    let settings = arguments.settings()?;
     let path = arguments
         .out
         .clone()
         .unwrap_or_else(|| Path::new("reports").join(&campaign.name));
     let out = OutputDir::claim(&path, &campaign, arguments.overwrite)?;
+    let extras = Extras {
+        csv: arguments.csv,
+        cross_check: arguments.cross_check,
+    };
 
     let progress = progress_bar(campaign.episodes);
-    let findings = run(&campaign, settings, &out, arguments.csv, &|episodes| {
-        progress.inc(u64::from(episodes))
+    let findings = run(&campaign, &settings, &out, extras, &|episodes| {
+        progress.inc(u64::from(episodes));
     });
     progress.finish_and_clear();
     let findings = findings?;
@@ -299,6 +215,12 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
         print_json(&show::findings_json(&findings))?;
     } else {
         print(&show::findings(&campaign, &findings, &path))?;
+    }
+    if let Some(error) = show::shortcoming(&findings, &path) {
+        return Err(Failure {
+            error: anyhow::Error::msg(error),
+            code: Code::Other,
+        });
     }
     if findings.unmet.is_empty() {
         Ok(Code::Done)
@@ -308,6 +230,72 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
             code: Code::Unmet,
         })
     }
+}
+
+impl RunArguments {
+    /// The settings; options that contradict each other are refused.
+    fn settings(&self) -> Result<Settings, Failure> {
+        let precision = match self.precision {
+            PrecisionChoice::F32 => Precision::F32,
+            PrecisionChoice::F64 => Precision::F64,
+        };
+        let simd = match self.simd {
+            SimdChoice::Auto => None,
+            SimdChoice::Scalar => Some(Simd::Scalar),
+            SimdChoice::Avx2 => Some(Simd::Avx2),
+            SimdChoice::Avx512 => Some(Simd::Avx512),
+        };
+        if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
+            let name = format!("{simd:?}").to_lowercase();
+            return Err(Failure::usage(format!(
+                "--simd {name}: this processor lacks it; use auto"
+            )));
+        }
+        let backend = match (self.backend, &self.adapter) {
+            (BackendChoice::Gpu, adapter) => Backend::Gpu {
+                adapter: adapter.clone(),
+            },
+            (_, Some(name)) => {
+                return Err(Failure::usage(format!(
+                    "--adapter {name}: only a GPU has adapters; add --backend gpu"
+                )));
+            }
+            (BackendChoice::Auto, None) => Backend::Auto,
+            (BackendChoice::Cpu, None) => Backend::Cpu,
+        };
+        if self.backend == BackendChoice::Gpu && precision == Precision::F64 {
+            return Err(Failure::usage(
+                "--precision f64: the shaders are in single precision; use --backend cpu".into(),
+            ));
+        }
+        if self.backend == BackendChoice::Gpu && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
+            ));
+        }
+        if precision == Precision::F64 && self.cross_check.is_some_and(|count| count > 0) {
+            return Err(Failure::usage(
+                "--cross-check: compares with f64, which this run is; leave it out".into(),
+            ));
+        }
+        Ok(Settings {
+            backend,
+            precision,
+            simd,
+            threads: usize::from(self.threads),
+            tuning: Tuning::default(),
+        })
+    }
+}
+
+fn devices_command(arguments: &DevicesArguments) -> Result<Code, Failure> {
+    let adapters = adapters();
+    if arguments.json {
+        print_json(&adapters)?;
+    } else {
+        print(&show::devices(&adapters, Simd::widest()))?;
+    }
+    Ok(Code::Done)
 }
 
 /// A bar with rate and time left, on a terminal only.

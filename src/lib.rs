@@ -5,7 +5,7 @@
 //! and values move forward only:
 //!
 //! ```text
-//! campaign -> synthesis, gains -> reference -> draw -> backend (model) -> tables -> comparison (statistics) -> output
+//! campaign -> synthesis, gains -> reference -> draw -> backend (model | shaders) -> tables -> comparison (statistics) -> output
 //! ```
 //!
 //! # Invariants
@@ -13,13 +13,15 @@
 //! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a number.
 //! - [`model`] is written once, generic over the lane type; what a campaign does not use is not in its loop.
 //! - Not-a-number is a verdict ("diverged"), never a value in a statistic and never a dropped row.
-//! - A directory with a manifest holds a whole run; files appear under their final name only when complete.
+//! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when complete.
 //! - The library does not print, does not exit and does not panic on input.
 
 pub mod backend;
 pub mod campaign;
 pub mod comparison;
+pub mod cross_check;
 pub mod draw;
+pub mod flight;
 pub mod gains;
 pub mod manifest;
 pub mod model;

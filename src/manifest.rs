@@ -1,7 +1,9 @@
 //! The manifest of a run: what it takes to do it again, and what it was done with.
 
-use crate::backend::cpu::{Precision, Simd};
+use crate::backend::cpu::Precision;
 use crate::campaign::Campaign;
+use crate::cross_check::CrossCheck;
+use crate::flight::Leg;
 use crate::output::{MANIFEST, OutputError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -26,14 +28,20 @@ pub struct Manifest {
     pub seed: u64,
     /// Episodes that were flown.
     pub episodes: u32,
-    /// Where: "cpu".
-    pub backend: String,
+    /// Episodes that were asked for.
+    pub episodes_asked: u32,
+    /// Why fewer were flown, if so.
+    pub interrupted: Option<String>,
     /// Number format of the episode loop.
     pub precision: Precision,
-    /// Layout of single-precision episodes.
-    pub simd: Option<Simd>,
-    /// Threads of the episode loop.
-    pub threads: usize,
+    /// What flew them.
+    pub legs: Vec<Leg>,
+    /// What there is to know about the choice of the backend.
+    pub notes: Vec<String>,
+    /// How some episodes compare with the reference, if they were.
+    pub cross_check: Option<CrossCheck>,
+    /// Why they were not, if they should have been.
+    pub cross_check_missing: Option<String>,
     /// Wall-clock times.
     pub times: Times,
 }
@@ -46,6 +54,8 @@ pub struct Times {
     pub synthesis_s: f64,
     /// Tabulating references and the episode loop itself.
     pub loop_s: f64,
+    /// Cross-check.
+    pub cross_check_s: f64,
     /// Filling tables and statistics.
     pub statistics_s: f64,
     /// Writing files.

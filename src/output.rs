@@ -11,7 +11,7 @@ use thiserror::Error;
 
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
-/// File name of the manifest, which is written last: a directory that has one holds a whole run.
+/// File name of the manifest, which is written last: a directory that has one holds all episodes that it counts.
 pub const MANIFEST: &str = "manifest.json";
 
 /// Why a run cannot be written or read.

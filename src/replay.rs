@@ -1,12 +1,14 @@
 //! One episode of a run again, with its trajectories.
 
-use crate::backend::cpu::{Cpu, Precision};
+use crate::backend::cpu::{Cpu, Precision, Simd};
+use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
 use crate::campaign::{Campaign, CampaignError, UAV_CHANNELS};
+use crate::flight::Engine;
 use crate::gains::{GainSet, GainsError};
 use crate::manifest::Manifest;
 use crate::model::Shown;
 use crate::model::episode::{AgentOutcome, Snapshot};
-use crate::output::OutputError;
+use crate::output::{MANIFEST, OutputError};
 use crate::tables::Table;
 use std::path::Path;
 use thiserror::Error;
@@ -45,8 +47,8 @@ pub enum ReplayError {
 pub struct Replay {
     /// The run's campaign.
     pub campaign: Campaign,
-    /// Whether it was flown in the run's own arithmetic; else in double precision, because this processor lacks the run's lanes.
-    pub same_arithmetic: bool,
+    /// Why it was flown in double precision on the CPU, if what flew the run is not to be had here.
+    pub stand_in: Option<String>,
     /// How each agent ended; equal to the run's rows, bit by bit in the same arithmetic.
     pub outcomes: Vec<AgentOutcome>,
     /// What every agent and channel showed.
@@ -91,19 +93,110 @@ pub fn replay(
         })?;
     let every = interval_steps(&campaign, interval_s)?;
     let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
-    // Other lanes round otherwise; if the run's are not to be had, the reference is the better stand-in.
-    let precision = match manifest.simd {
-        Some(simd) if !simd.is_available() => Precision::F64,
-        _ => manifest.precision,
+    let leg = manifest
+        .legs
+        .iter()
+        .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
+    let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
+        Some(Engine::Gpu { adapter, .. }) => {
+            match on_gpu(adapter, &campaign, &gains, episode, index, every) {
+                Ok(flown) => (flown, None),
+                Err(reason) => (
+                    on_cpu(
+                        &campaign,
+                        &gains,
+                        Precision::F64,
+                        None,
+                        episode,
+                        index,
+                        every,
+                    ),
+                    Some(reason),
+                ),
+            }
+        }
+        // Other lanes round otherwise; if the run's are not to be had, the reference is the better stand-in.
+        Some(&Engine::Cpu {
+            simd: Some(simd), ..
+        }) if !simd.is_available() => (
+            on_cpu(
+                &campaign,
+                &gains,
+                Precision::F64,
+                None,
+                episode,
+                index,
+                every,
+            ),
+            Some("this processor lacks the run's lanes".to_string()),
+        ),
+        Some(&Engine::Cpu { simd, .. }) => {
+            let precision = manifest.precision;
+            let flown = on_cpu(&campaign, &gains, precision, simd, episode, index, every);
+            (flown, None)
+        }
+        None => {
+            return Err(OutputError::NoRun {
+                path: dir.to_path_buf(),
+                reason: format!("{MANIFEST}: legs does not say what flew episode {episode}"),
+            }
+            .into());
+        }
     };
-    let cpu = Cpu::new(&campaign, &gains.loops(), precision, manifest.simd);
-    let (outcomes, snapshots) = cpu.trace(episode, index, every);
+    let (outcomes, snapshots) = flown;
     Ok(Replay {
         campaign,
-        same_arithmetic: precision == manifest.precision,
+        stand_in,
         outcomes,
         snapshots,
     })
+}
+
+/// How each agent ended, and what it showed.
+type Flown = (Vec<AgentOutcome>, Vec<Snapshot>);
+
+fn on_cpu(
+    campaign: &Campaign,
+    gains: &GainSet,
+    precision: Precision,
+    simd: Option<Simd>,
+    episode: u32,
+    controller: usize,
+    every: u32,
+) -> Flown {
+    Cpu::new(campaign, &gains.loops(), precision, simd).trace(episode, controller, every)
+}
+
+/// Flies on the adapter of the run, or says why that cannot be.
+fn on_gpu(
+    adapter: &Adapter,
+    campaign: &Campaign,
+    gains: &GainSet,
+    episode: u32,
+    controller: usize,
+    every: u32,
+) -> Result<Flown, String> {
+    let gpu = Gpu::open(Wanted::Same(adapter)).map_err(|error| error.to_string())?;
+    let tuning = Tuning {
+        batch: Some(1),
+        ..Tuning::default()
+    };
+    let mut flyer =
+        GpuFlyer::new(&gpu, campaign, &gains.loops(), tuning).map_err(|error| error.to_string())?;
+    let mut snapshots = Vec::new();
+    let flown = flyer
+        .trace(&[episode], every, &mut |instant| {
+            snapshots.push(Snapshot {
+                step: instant.step,
+                agents: instant.agents(0, controller),
+            });
+        })
+        .map_err(|error| error.to_string())?;
+    let outcomes = flown
+        .into_iter()
+        .next()
+        .map(|mut flown| flown.outcomes.swap_remove(controller));
+    Ok((outcomes.unwrap_or_default(), snapshots))
 }
 
 /// The steps between two samples.

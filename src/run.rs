@@ -1,28 +1,16 @@
 //! A whole run: gains, episodes, tables, statistics, files.
 
-use crate::backend::cpu::{Cpu, Precision, Simd};
+use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::{Campaign, Requirement};
 use crate::comparison::{self, FailureRate, MetricQuantiles, PairedComparison};
+use crate::cross_check::{CrossCheck, cross_check};
+use crate::flight::{Engine, Flight, FlightError, Settings, fly, open};
 use crate::gains::{GainSet, GainsError};
-use crate::manifest::{GIT_REVISION, Manifest, Times, campaign_hash};
+use crate::manifest::{GIT_REVISION, Manifest, campaign_hash};
 use crate::output::{MANIFEST, OutputDir, OutputError};
-use crate::tables::Tables;
+use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
-
-/// Episodes between two additions to the tables: enough to keep many cores busy, few enough to keep memory small.
-const BATCH: u32 = 2048;
-
-/// How a campaign is to be flown.
-#[derive(Debug, Clone, Copy)]
-pub struct Settings {
-    /// Number format of the episode loop.
-    pub precision: Precision,
-    /// Layout of single-precision episodes; the widest of this processor if not given.
-    pub simd: Option<Simd>,
-    /// Threads of the episode loop; all cores if zero.
-    pub threads: usize,
-}
 
 /// Why a run ended early.
 #[derive(Debug, Error)]
@@ -33,13 +21,23 @@ pub enum RunError {
     /// No directory to write.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// No threads.
-    #[error("--threads {threads}: the threads cannot be started ({source}); use fewer")]
-    Threads {
-        /// As many as were asked for.
-        threads: usize,
-        /// Why.
-        source: rayon::ThreadPoolBuildError,
+    /// Nothing flown.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+    /// Fewer episodes flown than the directory holds already.
+    #[error(
+        "{reason}; {flown} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
+        path.display()
+    )]
+    Interrupted {
+        /// Why no more were flown.
+        reason: GpuError,
+        /// Episodes that were flown.
+        flown: u32,
+        /// The directory.
+        path: PathBuf,
+        /// Episodes that it holds.
+        earlier: u32,
     },
     /// The manifest cannot be encoded.
     #[error("the manifest cannot be encoded")]
@@ -59,82 +57,82 @@ pub struct Findings<'a> {
     pub manifest: Manifest,
 }
 
-/// Flies a campaign with gains at hand; `done` is told of finished episodes.
-///
-/// # Errors
-/// If the threads cannot be started.
-pub fn fly(
-    campaign: &Campaign,
-    gains: &GainSet,
-    settings: Settings,
-    done: &(dyn Fn(u32) + Sync),
-) -> Result<Flight, RunError> {
-    let threads = settings.threads;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|source| RunError::Threads { threads, source })?;
-    let mut times = Times::default();
-    let start = Instant::now();
-    let cpu = Cpu::new(campaign, &gains.loops(), settings.precision, settings.simd);
-    let mut tables = Tables::new(campaign);
-    times.loop_s += start.elapsed().as_secs_f64();
-    let mut first = 0;
-    while first < campaign.episodes {
-        let next = first.saturating_add(BATCH).min(campaign.episodes);
-        let start = Instant::now();
-        let flown = pool.install(|| cpu.fly(first..next, done));
-        times.loop_s += start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        for episode in &flown {
-            tables.add(campaign, episode);
-        }
-        times.statistics_s += start.elapsed().as_secs_f64();
-        first = next;
-    }
-    Ok(Flight {
-        tables,
-        times,
-        simd: cpu.simd(),
-        threads: pool.current_num_threads(),
-    })
+/// What a run does beside flying.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Extras {
+    /// Whether the two big tables are written as CSV too.
+    pub csv: bool,
+    /// Episodes that are flown again on the reference; [`GPU_CROSS_CHECK`] on a GPU and none on the CPU if not given.
+    pub cross_check: Option<u32>,
 }
 
-/// The tables of a flown campaign, and how they came about.
-#[derive(Debug)]
-pub struct Flight {
-    /// The tables.
-    pub tables: Tables,
-    /// Times so far.
-    pub times: Times,
-    /// Layout that was used.
-    pub simd: Option<Simd>,
-    /// Threads that were used.
-    pub threads: usize,
-}
+/// Episodes of a GPU's run that are flown again on the reference, if nothing else is asked for.
+pub const GPU_CROSS_CHECK: u32 = 32;
 
-/// Runs a campaign into a directory. `csv` also writes the two big tables as CSV.
+/// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the findings
+/// say so.
 ///
 /// # Errors
-/// If gains cannot be had, or files cannot be written.
+/// If gains cannot be had, nothing can be flown, or files cannot be written.
 pub fn run<'a>(
     campaign: &'a Campaign,
-    settings: Settings,
+    settings: &Settings,
     out: &OutputDir,
-    csv: bool,
+    extras: Extras,
+    done: &(dyn Fn(u32) + Sync),
+) -> Result<Findings<'a>, RunError> {
+    let (gpu, notes) = open(settings)?;
+    run_on(campaign, settings, gpu.as_ref(), notes, out, extras, done)
+}
+
+/// [`run`] on a device at hand, to test what becomes of a run whose device fails.
+///
+/// # Errors
+/// As [`run`].
+#[doc(hidden)]
+pub fn run_on<'a>(
+    campaign: &'a Campaign,
+    settings: &Settings,
+    gpu: Option<&Gpu>,
+    mut notes: Vec<String>,
+    out: &OutputDir,
+    extras: Extras,
     done: &(dyn Fn(u32) + Sync),
 ) -> Result<Findings<'a>, RunError> {
     let start = Instant::now();
     let gains = GainSet::obtain(campaign)?;
     let synthesis_s = start.elapsed().as_secs_f64();
 
+    let flight = fly(campaign, &gains, settings, gpu, done)?;
+    notes.extend(flight.notes.iter().cloned());
+    let start = Instant::now();
+    let (cross_check, cross_check_missing) =
+        match checked(campaign, &gains, settings, gpu, &flight, extras.cross_check) {
+            Ok(check) => (check, None),
+            Err(error) => (None, Some(error.to_string())),
+        };
     let Flight {
         tables,
         mut times,
-        simd,
-        threads,
-    } = fly(campaign, &gains, settings, done)?;
+        legs,
+        interrupted,
+        ..
+    } = flight;
+    times.cross_check_s = start.elapsed().as_secs_f64();
     times.synthesis_s = synthesis_s;
+
+    let episodes = legs.iter().map(|leg| leg.episodes).sum();
+    if let Some(reason) = &interrupted
+        && let Ok(earlier) = Manifest::read(out.path())
+        && earlier.episodes > episodes
+    {
+        return Err(RunError::Interrupted {
+            reason: reason.clone(),
+            flown: episodes,
+            path: out.path().to_path_buf(),
+            earlier: earlier.episodes,
+        });
+    }
 
     let start = Instant::now();
     let summary = comparison::summarise(campaign, &tables.scores);
@@ -147,8 +145,8 @@ pub fn run<'a>(
     let summary_table = comparison::summary_table(&summary);
     let comparison_table = comparison::comparison_table(&comparisons);
     for (name, table, with_csv) in [
-        ("episodes", &tables.episodes, csv),
-        ("channels", &tables.channels, csv),
+        ("episodes", &tables.episodes, extras.csv),
+        ("channels", &tables.channels, extras.csv),
         ("summary", &summary_table, true),
         ("comparison", &comparison_table, true),
     ] {
@@ -174,11 +172,14 @@ pub fn run<'a>(
         campaign_blake3: campaign_hash(campaign),
         campaign: campaign.text.clone(),
         seed: campaign.seed,
-        episodes: campaign.episodes,
-        backend: "cpu".to_string(),
+        episodes,
+        episodes_asked: campaign.episodes,
+        interrupted: interrupted.map(|error| error.to_string()),
         precision: settings.precision,
-        simd,
-        threads,
+        legs,
+        notes,
+        cross_check,
+        cross_check_missing,
         times,
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
@@ -188,6 +189,32 @@ pub fn run<'a>(
         unmet,
         manifest,
     })
+}
+
+/// The cross-check of a flight: of its first leg, on the engine that flew it.
+fn checked(
+    campaign: &Campaign,
+    gains: &GainSet,
+    settings: &Settings,
+    gpu: Option<&Gpu>,
+    flight: &Flight,
+    count: Option<u32>,
+) -> Result<Option<CrossCheck>, GpuError> {
+    let Some(leg) = flight.legs.first() else {
+        return Ok(None);
+    };
+    let default = match leg.engine {
+        Engine::Gpu { .. } => GPU_CROSS_CHECK,
+        Engine::Cpu { .. } => 0,
+    };
+    let count = count.unwrap_or(default);
+    // A GPU that failed is gone; under `auto` its note says that its episodes are not checked.
+    if count == 0 || flight.legs.len() > 1 {
+        return Ok(None);
+    }
+    let scores = &flight.tables.scores;
+    let check = || cross_check(campaign, gains, settings, leg, scores, gpu, count);
+    flight.pool.install(check).map(Some)
 }
 
 fn pretty(value: &impl serde::Serialize) -> Result<Vec<u8>, serde_json::Error> {

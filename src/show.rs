@@ -1,10 +1,12 @@
 //! What the commands print.
 
+mod devices;
 mod findings;
 mod gains;
 mod plan;
 
-pub(crate) use findings::{findings, findings_json, unmet};
+pub(crate) use devices::devices;
+pub(crate) use findings::{findings, findings_json, shortcoming, unmet};
 pub(crate) use gains::{gains, synthesis};
 pub(crate) use plan::{plan, plan_json};
 
@@ -45,10 +47,12 @@ pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Pat
             );
         }
     }
-    if !replay.same_arithmetic {
+    if let Some(reason) = &replay.stand_in {
         line(
             &mut text,
-            "flown in f64: this processor lacks the run's lanes, so digits beyond single precision differ",
+            &format!(
+                "flown in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
+            ),
         );
     }
     line(

@@ -158,6 +158,32 @@ pub struct Scores {
     pub fault_occurs: Vec<Vec<bool>>,
 }
 
+impl Scores {
+    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that are none
+    /// are all alike.
+    #[must_use]
+    pub fn holds(
+        &self,
+        campaign: &Campaign,
+        controller: usize,
+        episode: u32,
+        agents: &[AgentOutcome],
+    ) -> bool {
+        let stride = campaign.team * campaign.channels().len();
+        let rows = episode as usize * stride..(episode as usize + 1) * stride;
+        let same = |kept: &[f64], pick: fn(&ChannelOutcome) -> f64| {
+            let again = agents.iter().flat_map(|agent| &agent.channels).map(pick);
+            let kept = kept.get(rows.clone()).unwrap_or_default();
+            kept.len() == stride
+                && kept.iter().zip(again).all(|(kept, again)| {
+                    kept.to_bits() == again.to_bits() || kept.is_nan() && again.is_nan()
+                })
+        };
+        same(&self.rmse[controller], |metrics| metrics.rmse)
+            && same(&self.max_abs[controller], |metrics| metrics.max_abs)
+    }
+}
+
 impl Tables {
     /// Empty tables of a campaign.
     #[must_use]
@@ -219,6 +245,22 @@ impl Tables {
     }
 }
 
+/// What the verdict of a campaign makes of an agent's outcome.
+#[must_use]
+pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
+    // max_error was judged step by step, in the precision of the loop.
+    let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
+        metrics.rmse > campaign.verdict.max_rmse[channel]
+    };
+    if outcome.diverged {
+        Status::Diverged
+    } else if outcome.failed_step.is_some() || outcome.channels.iter().enumerate().any(too_large) {
+        Status::Exceeded
+    } else {
+        Status::Ok
+    }
+}
+
 /// An agent's outcome and what the verdict makes of it.
 struct Judged<'a> {
     outcome: &'a AgentOutcome,
@@ -229,22 +271,9 @@ struct Judged<'a> {
 
 impl<'a> Judged<'a> {
     fn new(campaign: &Campaign, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
-        let verdict = &campaign.verdict;
-        // max_error was judged step by step, in the precision of the loop.
-        let too_large =
-            |(channel, metrics): (usize, &ChannelOutcome)| metrics.rmse > verdict.max_rmse[channel];
-        let status = if outcome.diverged {
-            Status::Diverged
-        } else if outcome.failed_step.is_some()
-            || outcome.channels.iter().enumerate().any(too_large)
-        {
-            Status::Exceeded
-        } else {
-            Status::Ok
-        };
         Self {
             outcome,
-            status,
+            status: status(campaign, outcome),
             first_fault: crate::model::condition::later_onsets(campaign, draw)
                 .into_iter()
                 .min(),

@@ -133,7 +133,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
 
 /// base - L (y - yhat), one row.
 #[inline(always)]
-fn injected<L: Lane>(row: &[L::Real; 3], innovation: &[L; 3], base: L) -> L {
+pub(crate) fn injected<L: Lane>(row: &[L::Real; 3], innovation: &[L; 3], base: L) -> L {
     let mut sum = innovation[0].mul_add(L::splat(row[0]), base);
     sum = innovation[1].mul_add(L::splat(row[1]), sum);
     innovation[2].mul_add(L::splat(row[2]), sum)

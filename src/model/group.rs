@@ -45,15 +45,15 @@ pub(crate) struct Setting<'t, P, R, const NC: usize> {
 
 /// One agent's channels of the group.
 pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    channels: [Stepped<L, NS>; NC],
-    extra: Stepped<L, NX>,
-    signals: Signals<L, NC>,
-    inverse_inertia: [L; NC],
-    kappa: L,
-    first_fault: L,
-    metrics: [Metrics<L>; NC],
+    pub(crate) channels: [Stepped<L, NS>; NC],
+    pub(crate) extra: Stepped<L, NX>,
+    pub(crate) signals: Signals<L, NC>,
+    pub(crate) inverse_inertia: [L; NC],
+    pub(crate) kappa: L,
+    pub(crate) first_fault: L,
+    pub(crate) metrics: [Metrics<L>; NC],
     /// The first step that failed; infinite if none did.
-    failed: L,
+    pub(crate) failed: L,
 }
 
 /// The state of a group between two steps.
@@ -61,10 +61,10 @@ pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usi
     pub(crate) agents: Vec<Agent<L, NC, NS, NX>>,
     episodes: [u32; MAX_WIDTH],
     /// Steps at which a fault switches, ascending.
-    changes: Vec<u32>,
-    next_change: usize,
+    pub(crate) changes: Vec<u32>,
+    pub(crate) next_change: usize,
     noisy: bool,
-    step: u32,
+    pub(crate) step: u32,
 }
 
 /// What one channel shows at one instant, `[lane]`.
@@ -109,7 +109,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
 
     /// x and x' of the channels at the state of stage `STAGE`.
     #[inline(always)]
-    fn motion<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn motion<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
         plant: &P,
         rows: &[ReferenceRow<L::Real>],
@@ -125,7 +125,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
 
     /// The answer of the plant at the state of stage `STAGE`; `team` is the sum of x over the team.
     #[inline(always)]
-    fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
         setting: &Setting<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
@@ -158,7 +158,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     }
 
     #[inline(always)]
-    fn observe<P: Plant<L, NC, NX>, const SETTLED: bool>(
+    pub(crate) fn observe<P: Plant<L, NC, NX>, const SETTLED: bool>(
         &mut self,
         limits: &[Limits<L::Real>; NC],
         response: &Response<L, NC, NX>,
@@ -216,7 +216,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
 
     /// Sets what is held over the coming step, if it differs from the last.
     #[inline(always)]
-    fn begin_step(&mut self, seed: u64) {
+    pub(crate) fn begin_step(&mut self, seed: u64) {
         let change = self.changes.get(self.next_change) == Some(&self.step);
         if change {
             self.next_change += 1;
@@ -227,7 +227,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     }
 
     #[inline(always)]
-    fn hold(&mut self, seed: u64) {
+    pub(crate) fn hold(&mut self, seed: u64) {
         let now = L::number(f64::from(self.step));
         for agent in &mut self.agents {
             agent.signals.hold(self.step, seed, &self.episodes);
@@ -240,7 +240,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
 
     /// The sum of x over the team, which the coupling needs.
     #[inline(always)]
-    fn team_sum<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn team_sum<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
         setting: &Setting<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
@@ -263,7 +263,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     }
 
     #[inline(always)]
-    fn stage<P: Plant<L, NC, NX>, const STAGE: usize, const SETTLED: bool>(
+    pub(crate) fn stage<P: Plant<L, NC, NX>, const STAGE: usize, const SETTLED: bool>(
         &mut self,
         setting: &Setting<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
@@ -301,7 +301,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
 
     /// Integrates up to step number `until`.
     #[inline(always)]
-    fn advance<P: Plant<L, NC, NX>>(&mut self, setting: &Setting<'_, P, L::Real, NC>, until: u32) {
+    pub(crate) fn advance<P: Plant<L, NC, NX>>(
+        &mut self,
+        setting: &Setting<'_, P, L::Real, NC>,
+        until: u32,
+    ) {
         let h = Step::new(setting.step_s);
         let stride = self.agents.len() * NC;
         while self.step < until {
@@ -328,7 +332,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     }
 
     #[inline(always)]
-    fn flush(&mut self) {
+    pub(crate) fn flush(&mut self) {
         for agent in &mut self.agents {
             for metrics in &mut agent.metrics {
                 metrics.flush();
@@ -338,7 +342,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
 
     /// What the first lane shows at the current step, `[agent][channel]`.
     #[inline(always)]
-    fn show<P: Plant<L, NC, NX>>(
+    pub(crate) fn show<P: Plant<L, NC, NX>>(
         &mut self,
         setting: &Setting<'_, P, L::Real, NC>,
     ) -> Vec<[Shown; NC]> {

@@ -11,7 +11,7 @@ pub(crate) struct Stepped<L, const N: usize> {
     /// The state at which the current stage's slope is taken.
     pub(crate) point: [L; N],
     /// start + h/6 (k1 + 2 k2 + ..), as far as the stages went.
-    sum: [L; N],
+    pub(crate) sum: [L; N],
 }
 
 /// h/6, h/3, h/2 and h of a step h.

@@ -109,7 +109,7 @@ pub(crate) fn fixed_turns_32(turns: f64) -> u32 {
 }
 
 #[inline(always)]
-fn polynomial<L: Lane, const N: usize>(x: L, coefficients: &[f64; N]) -> L {
+pub(crate) fn polynomial<L: Lane, const N: usize>(x: L, coefficients: &[f64; N]) -> L {
     let mut sum = L::number(coefficients[N - 1]);
     for k in (0..N - 1).rev() {
         sum = sum.mul_add(x, L::number(coefficients[k]));

@@ -4,28 +4,28 @@ use super::lanes::{Lane, Real};
 
 /// Sums over steps.
 #[derive(Clone, Copy)]
-struct Sums<L> {
-    square: L,
-    absolute: L,
-    effort: L,
-    actuator_fault: L,
-    sensor_fault: L,
-    limited: L,
+pub(crate) struct Sums<L> {
+    pub(crate) square: L,
+    pub(crate) absolute: L,
+    pub(crate) effort: L,
+    pub(crate) actuator_fault: L,
+    pub(crate) sensor_fault: L,
+    pub(crate) limited: L,
 }
 
 /// Metrics of one channel.
 #[derive(Clone, Copy)]
 pub(crate) struct Metrics<L> {
     /// Of the steps since the last [`Metrics::flush`]: short sums keep the digits of single precision.
-    recent: Sums<L>,
+    pub(crate) recent: Sums<L>,
     /// Of the steps before.
-    total: Sums<L>,
-    largest: L,
-    largest_command: L,
+    pub(crate) total: Sums<L>,
+    pub(crate) largest: L,
+    pub(crate) largest_command: L,
     /// The last step with |e| above the settled error; -1 if there is none.
-    outside: L,
+    pub(crate) outside: L,
     /// The same, up to the agent's first fault.
-    outside_before_fault: L,
+    pub(crate) outside_before_fault: L,
 }
 
 /// What one channel shows at the start of a step.

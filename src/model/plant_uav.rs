@@ -161,7 +161,7 @@ impl<R: Real> Attitude<R> {
 
     /// Theta'' under a torque per true inertia, (3).
     #[inline(always)]
-    fn acceleration<L: Lane<Real = R>>(
+    pub(crate) fn acceleration<L: Lane<Real = R>>(
         &self,
         torque: [L; 3],
         rate: [L; 3],
@@ -246,7 +246,7 @@ impl<R: Real> Thrust<R> {
 
 /// R(Theta) [0 0 1]', (3).
 #[inline(always)]
-fn body_axis<L: Lane>(roll: L, pitch: L, (sin_yaw, cos_yaw): (L, L)) -> [L; 3] {
+pub(crate) fn body_axis<L: Lane>(roll: L, pitch: L, (sin_yaw, cos_yaw): (L, L)) -> [L; 3] {
     let ((sin_roll, cos_roll), (sin_pitch, cos_pitch)) = (roll.sin_cos(), pitch.sin_cos());
     let forward = sin_pitch * cos_roll;
     [
@@ -268,7 +268,7 @@ fn splat_row<L: Lane>(row: &ReferenceRow<L::Real>) -> [L; 4] {
 }
 
 #[inline(always)]
-fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
+pub(crate) fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
     value.max(low).min(high)
 }
 

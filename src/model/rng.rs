@@ -29,7 +29,7 @@ pub fn philox4x32(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     clippy::cast_possible_truncation,
     reason = "the two halves of a 64-bit product"
 )]
-fn wide_product(a: u32, b: u32) -> (u32, u32) {
+pub(crate) fn wide_product(a: u32, b: u32) -> (u32, u32) {
     let product = u64::from(a) * u64::from(b);
     ((product >> 32) as u32, product as u32)
 }
@@ -46,6 +46,8 @@ pub enum Stream {
     Fault = 3,
     /// Sensor noise, sample by sample.
     Noise = 4,
+    /// Which episodes a run is checked by.
+    CrossCheck = 5,
 }
 
 /// Where a random number lives inside its campaign's seed.

@@ -66,7 +66,7 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     pub(crate) sensor_biases: Vec<[Switch<L>; NC]>,
     pub(crate) noises: Vec<Noise<L, NC>>,
     /// Sensor bias and noise of this step.
-    held_sensor: [L; NC],
+    pub(crate) held_sensor: [L; NC],
     /// What actuator faults leave of the command in this step.
     pub(crate) command_gain: [L; NC],
     /// What actuator faults add to the command in this step.
@@ -79,7 +79,7 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
 
 impl<L: Lane> Switch<L> {
     #[inline(always)]
-    fn at(self, step: L, before: L) -> L {
+    pub(crate) fn at(self, step: L, before: L) -> L {
         L::select_le(self.onset, step, self.value, before)
     }
 }
@@ -176,7 +176,13 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
 impl<L: Lane, const NC: usize> Noise<L, NC> {
     /// Draws the four samples of a channel that block number `index` holds (Box and Muller's transform, twice).
     #[inline(always)]
-    fn draw(&mut self, channel: usize, index: u32, seed: u64, episodes: &[u32; MAX_WIDTH]) {
+    pub(crate) fn draw(
+        &mut self,
+        channel: usize,
+        index: u32,
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
         let mut words = [[0; MAX_WIDTH]; 4];
         for lane in 0..L::WIDTH {
             let address = Address {

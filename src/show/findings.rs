@@ -5,6 +5,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 use urts_mc::campaign::Campaign;
 use urts_mc::comparison::{FailureRate, PairedComparison, Ratio};
+use urts_mc::cross_check::{CrossCheck, ERROR_LIMIT, RMSE_LIMIT};
+use urts_mc::flight::{Engine, Leg};
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
 
@@ -12,22 +14,26 @@ use urts_mc::statistics::{Estimate, Interval};
 pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
     let mut text = String::new();
     let manifest = &findings.manifest;
-    let simd = manifest
-        .simd
-        .map_or(String::new(), |simd| format!(" {simd:?}").to_lowercase());
     let precision = format!("{:?}", manifest.precision).to_lowercase();
+    let engines: Vec<String> = manifest.legs.iter().map(engine).collect();
     line(
         &mut text,
         &format!(
-            "{}: {} episodes x {} UAVs, seed {}, {precision}{simd} on the CPU, {} threads, {:.1} s of flying",
+            "{}: {} episodes x {} UAVs, seed {}, {precision} on {}, {:.1} s of flying",
             campaign.name,
-            campaign.episodes,
+            manifest.episodes,
             campaign.team,
             campaign.seed,
-            manifest.threads,
+            engines.join(", then on "),
             manifest.times.loop_s
         ),
     );
+    for note in &manifest.notes {
+        line(&mut text, &format!("note: {note}"));
+    }
+    if let Some(check) = &manifest.cross_check {
+        line(&mut text, &cross_check(check, campaign.controllers.len()));
+    }
     line(
         &mut text,
         "\nfailures (an episode fails with any of its UAVs)",
@@ -127,15 +133,85 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     line(
         &mut text,
         &format!(
-            "\nwritten to {} (synthesis {:.1} s, flying {:.1} s, statistics {:.1} s, writing {:.1} s)",
+            "\nwritten to {} (synthesis {:.1} s, flying {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
             out.display(),
             times.synthesis_s,
             times.loop_s,
+            times.cross_check_s,
             times.statistics_s,
             times.writing_s
         ),
     );
     text
+}
+
+/// What flew some episodes.
+fn engine(leg: &Leg) -> String {
+    match &leg.engine {
+        Engine::Cpu { simd, threads } => {
+            let lanes = simd.map_or(String::new(), |simd| format!(" ({simd:?})").to_lowercase());
+            format!("the CPU{lanes}, {threads} threads")
+        }
+        Engine::Gpu { adapter, .. } => format!("{} ({})", adapter.name, adapter.driver),
+    }
+}
+
+fn cross_check(check: &CrossCheck, controllers: usize) -> String {
+    let pairs = check.episodes.len() * controllers;
+    let differences = if check.compared == 0 {
+        format!("no errors compared (all {pairs} flights fail or saturate)")
+    } else {
+        format!(
+            "|e| within {:.1e}, RMS error within {:.1e} relative ({} of {pairs} flights neither fail nor saturate)",
+            check.largest_error_difference, check.largest_rmse_difference, check.compared,
+        )
+    };
+    format!(
+        "cross-check of {} episodes with f64 on the CPU: {differences}, {} of {pairs} verdicts differ",
+        check.episodes.len(),
+        check.verdicts_differ,
+    )
+}
+
+/// Why the result is not to be relied on: episodes are missing, or the cross-check found too much.
+pub(crate) fn shortcoming(findings: &Findings<'_>, out: &Path) -> Option<String> {
+    let manifest = &findings.manifest;
+    let missing = manifest.interrupted.as_ref().map(|reason| {
+        format!(
+            "{reason}; the {} of {} episodes that were finished are in {}; use --backend cpu for all",
+            manifest.episodes,
+            manifest.episodes_asked,
+            out.display()
+        )
+    });
+    // A GPU that is gone cannot be checked: that it is gone has been said.
+    let unchecked = manifest
+        .cross_check_missing
+        .as_ref()
+        .filter(|_| manifest.interrupted.is_none());
+    let unchecked = unchecked.map(|reason| {
+        format!(
+            "the cross-check could not be done: {reason}; use --backend cpu, or --cross-check 0"
+        )
+    });
+    let failed = manifest.cross_check.as_ref().filter(|check| !check.holds());
+    let differs = failed.map(|check| {
+        format!(
+            "the cross-check fails: |e| differs by {:.1e} (limit {ERROR_LIMIT:.0e}), the RMS error by {:.1e} relative \
+             (limit {RMSE_LIMIT:.0e}), {} verdicts without being near a threshold (limit 0), {} flights give other \
+             numbers when repeated (limit 0); use --backend cpu, and please report this",
+            check.largest_error_difference,
+            check.largest_rmse_difference,
+            check.verdicts_differ_clearly,
+            check.not_repeated
+        )
+    });
+    let all: Vec<String> = missing
+        .into_iter()
+        .chain(unchecked)
+        .chain(differs)
+        .collect();
+    (!all.is_empty()).then(|| all.join("\n"))
 }
 
 /// The requirements that do not hold, each with the reason and what to do: one a line.

@@ -17,10 +17,11 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
+use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning, Wanted, adapters};
 use urts_mc::campaign::Campaign;
+use urts_mc::flight::{Settings, fly};
 use urts_mc::gains::GainSet;
 use urts_mc::model::lanes::{Kernel, Lane};
-use urts_mc::run::{Settings, fly};
 
 /// Floating-point operations per UAV-step, counted on the hand-written programs.
 const FLOP: [(&str, f64); 2] = [("ftc", 3640.0), ("pid", 2344.0)];
@@ -92,6 +93,70 @@ fn main() {
         );
     }
     outside_the_loop(&campaign);
+    on_gpu(&campaign);
+}
+
+/// UAV-steps per second on a GPU, all three controllers together, with its times apart: hardware if there is any, else
+/// whatever adapter there is, which is a software one.
+fn on_gpu(campaign: &Campaign) {
+    let Some(report) = adapters().into_iter().next() else {
+        println!("\nno GPU: not measured");
+        return;
+    };
+    let adapter = &report.adapter;
+    let gpu = Gpu::open(Wanted::Named(&adapter.name)).expect("a listed adapter opens");
+    let sizes: &[u32] = if adapter.kind.is_hardware() {
+        &[1024, 8192, 32_768, 131_072]
+    } else {
+        &[128]
+    };
+    println!(
+        "\n{} ({:?}, {}, {})\n{:>9} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12} {:>12}",
+        adapter.name,
+        adapter.kind,
+        adapter.api,
+        adapter.driver,
+        "episodes",
+        "batch",
+        "M UAV-steps/s",
+        "GFLOP/s",
+        "compile, s",
+        "upload, s",
+        "kernel, s",
+        "read-back, s"
+    );
+    let flop: f64 = campaign.controllers.iter().map(|name| flop(name)).sum();
+    for &episodes in sizes {
+        let mut campaign = campaign.clone();
+        campaign.episodes = episodes;
+        let gains = GainSet::obtain(&campaign).expect("the paper's gains exist");
+        let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains.loops(), Tuning::default())
+            .expect("the campaign fits the adapter");
+        let mut first = 0;
+        while first < episodes {
+            let next = (first + flyer.batch()).min(episodes);
+            black_box(flyer.fly(first..next, &|_| ()).expect("the GPU goes on"));
+            first = next;
+        }
+        let times = flyer.times();
+        let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
+        let controllers = campaign.controllers.len() as f64;
+        println!(
+            "{episodes:>9} {:>8} {:>14.2} {:>10.1} {:>10.2} {:>10.2} {:>12.2} {:>12.2}",
+            flyer.batch(),
+            1e-6 * steps * controllers / times.kernel_s,
+            1e-9 * steps * flop / times.kernel_s,
+            times.compile_s,
+            times.upload_s,
+            times.kernel_s,
+            times.read_back_s
+        );
+    }
+}
+
+/// Floating-point operations of a UAV-step under a controller.
+fn flop(controller: &str) -> f64 {
+    FLOP[usize::from(controller != FLOP[0].0)].1
 }
 
 /// The share of the wall time that is not the episode loop, over 1000 episodes under all three controllers and on all cores.
@@ -99,13 +164,9 @@ fn outside_the_loop(campaign: &Campaign) {
     let mut campaign = campaign.clone();
     campaign.episodes = 1000;
     let gains = GainSet::obtain(&campaign).expect("the paper's gains exist");
-    let settings = Settings {
-        precision: Precision::F32,
-        simd: None,
-        threads: 0,
-    };
+    let settings = Settings::cpu(Precision::F32);
     let start = Instant::now();
-    let flight = fly(&campaign, &gains, settings, &|_| ()).expect("threads");
+    let flight = fly(&campaign, &gains, &settings, None, &|_| ()).expect("threads");
     let total = start.elapsed().as_secs_f64();
     let outside = total - flight.times.loop_s;
     println!(

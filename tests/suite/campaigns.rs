@@ -1,6 +1,6 @@
 //! Every shipped campaign, and what the paper and the specification expect of the two big ones.
 
-use crate::common::{altered, campaign, fly, repository, tables};
+use crate::common::{altered, campaign, fly, shipped_campaigns, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::{Campaign, Distribution};
 use urts_mc::comparison::{compare, summarise};
@@ -10,8 +10,7 @@ use urts_mc::tables::Status;
 #[test]
 fn every_shipped_campaign_is_valid_and_bears_its_file_name() {
     let mut count = 0;
-    for entry in std::fs::read_dir(repository("campaigns")).unwrap() {
-        let path = entry.unwrap().path();
+    for path in shipped_campaigns() {
         let campaign = Campaign::load(&path).unwrap();
         assert_eq!(
             Some(campaign.name.as_str()),

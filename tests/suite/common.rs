@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use urts_mc::backend::Flown;
 use urts_mc::backend::cpu::{Cpu, Precision};
+use urts_mc::backend::gpu::{Gpu, Wanted, adapters};
 use urts_mc::campaign::Campaign;
 use urts_mc::gains::GainSet;
 use urts_mc::tables::Tables;
@@ -10,6 +11,13 @@ use urts_mc::tables::Tables;
 /// A file of this repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// The files of the shipped campaigns.
+pub(crate) fn shipped_campaigns() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(repository("campaigns")).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths.filter(|path| path.is_file()).collect()
 }
 
 /// A shipped campaign.
@@ -49,4 +57,22 @@ pub(crate) fn tables(campaign: &Campaign, precision: Precision) -> Tables {
         tables.add(campaign, &flown);
     }
     tables
+}
+
+/// Name of the adapter: hardware if there is any, else the first; none where there is none and none is required.
+pub(crate) fn adapter_or_skip() -> Option<String> {
+    let name = adapters().first().map(|report| report.adapter.name.clone());
+    if name.is_none() {
+        assert!(
+            std::env::var("URTS_REQUIRE_GPU").as_deref() != Ok("1"),
+            "URTS_REQUIRE_GPU=1, but there is no adapter"
+        );
+        println!("SKIPPED: no adapter");
+    }
+    name
+}
+
+/// A device; none where there is no adapter and none is required. An adapter that gives no device is a failure.
+pub(crate) fn gpu_or_skip() -> Option<Gpu> {
+    adapter_or_skip().map(|name| Gpu::open(Wanted::Named(&name)).unwrap())
 }

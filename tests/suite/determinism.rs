@@ -6,10 +6,11 @@ use std::fs;
 use urts_mc::backend::Flown;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
+use urts_mc::flight::Settings;
 use urts_mc::gains::GainSet;
 use urts_mc::output::OutputDir;
 use urts_mc::replay::replay;
-use urts_mc::run::{Settings, run};
+use urts_mc::run::{Extras, run};
 
 /// The campaign with noise and every other kind of signal added, short, and with a number of episodes that fills no block.
 fn everything() -> Campaign {
@@ -74,13 +75,16 @@ fn files(
     let out = OutputDir::claim(&dir.path().join("run"), campaign, false).unwrap();
     run(
         campaign,
-        Settings {
-            precision,
+        &Settings {
             simd,
             threads,
+            ..Settings::cpu(precision)
         },
         &out,
-        true,
+        Extras {
+            csv: true,
+            cross_check: None,
+        },
         &|_| (),
     )
     .unwrap();
@@ -183,13 +187,9 @@ fn a_replayed_episode_has_the_metrics_of_its_row() {
         let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
         run(
             &campaign,
-            Settings {
-                precision,
-                simd: None,
-                threads: 2,
-            },
+            &Settings::cpu(precision),
             &out,
-            false,
+            Extras::default(),
             &|_| (),
         )
         .unwrap();

@@ -1,67 +1,99 @@
-//! The GPU backend on whatever adapter there is; CI has a software Vulkan.
+//! The GPU backend on whatever adapter there is; a software Vulkan will do, slowly.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `agreement` | the comparison of flights with the CPU's |
+//! | `parity` | every kind of campaign against double and single precision on the CPU |
+//! | `mutations` | changed shaders and gains, each of which that comparison must notice |
+//! | `determinism` | the same bits for any batch, span of steps, order and company |
+//! | `failures` | lost devices, shaders that do not compile, too little memory, too large teams |
 //!
 //! Without an adapter these tests print SKIPPED, unless URTS_REQUIRE_GPU=1 asks for one.
 
-use crate::common::campaign;
-use urts_mc::backend::Flown;
-use urts_mc::backend::cpu::{Cpu, Precision};
-use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning, Wanted, adapters};
-use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+mod agreement;
+mod determinism;
+mod failures;
+mod mutations;
+mod parity;
 
-/// A device: hardware if there is any, else the first adapter; none where there is none and none is required.
-fn gpu_or_skip() -> Option<Gpu> {
-    let opened = match adapters().first() {
-        Some(report) => Gpu::open(Wanted::Named(&report.adapter.name)),
-        None => Err(GpuError::NoHardware { found: Vec::new() }),
-    };
-    match opened {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            assert!(
-                std::env::var("URTS_REQUIRE_GPU").as_deref() != Ok("1"),
-                "URTS_REQUIRE_GPU=1, but {error}"
-            );
-            println!("SKIPPED: {error}");
-            None
-        }
+use crate::common::repository;
+use urts_mc::backend::Flown;
+use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
+use urts_mc::campaign::Campaign;
+use urts_mc::synthesis::LoopGains;
+
+/// Gains of every controller, on position and attitude.
+type Gains = Vec<[LoopGains; 2]>;
+
+/// Everything at once: tests/suite/gpu/mixed.toml, with parts of its text replaced; each part must be there.
+fn mixed(changes: &[(&str, &str)]) -> Campaign {
+    let path = repository("tests/suite/gpu/mixed.toml");
+    let mut text = std::fs::read_to_string(&path).unwrap();
+    for (old, new) in changes {
+        assert!(text.contains(old), "mixed.toml does not contain {old:?}");
+        text = text.replace(old, new);
     }
+    Campaign::parse(&text, &path).unwrap()
 }
 
-/// Flies a campaign on the GPU in one piece.
-fn fly(gpu: &Gpu, campaign: &Campaign, tuning: Tuning) -> Vec<Flown> {
-    let gains = GainSet::obtain(campaign).unwrap();
-    let mut flyer = GpuFlyer::new(gpu, campaign, &gains.loops(), tuning).unwrap();
+/// [`mixed`] with thrust along the body axis.
+fn mixed_thrust(changes: &[(&str, &str)]) -> Campaign {
+    let thrust = [
+        ("actuation = \"full\"", "actuation = \"thrust\""),
+        ("uav-paper", "uav-physical"),
+        // Roll and pitch follow from the force, and x and y have no actuators.
+        ("0.1, 0.1, 0.3]", "0.0, 0.0, 0.3]"),
+        ("0.5, 0.4, 0.2]", "0.0, 0.0, 0.2]"),
+        ("0.2, 0.4, 0.6]", "0.0, 0.0, 0.6]"),
+        ("channels = [1, 3, 5] ", "channels = [3, 4, 5] "),
+        ("channels = \"one\" # loss", "channels = [3]"),
+        // What a UAV with one thrust can bear.
+        ("uniform = [30.0, 100.0]", "uniform = [1.0, 5.0]"),
+        ("std = 5.0", "std = 0.3"),
+        ("std = 0.1", "std = 0.03"),
+        ("std = 0.02", "std = 0.005"),
+        (
+            "log_uniform = [0.0001, 0.002]",
+            "log_uniform = [0.00001, 0.0002]",
+        ),
+        ("std = 0.005\n", "std = 0.0005\n"),
+        ("uniform = [-6.0, 6.0]", "uniform = [-0.3, 0.3]"),
+        ("uniform = [0.1, 0.6]", "uniform = [0.02, 0.1]"),
+        ("choice = [0.0, 1.0, 60.0]", "choice = [0.0, 0.05, 20.0]"),
+    ];
+    mixed(&[&thrust, changes].concat())
+}
+
+/// Changes of [`mixed`]: 600 steps, so that there are two flushes of the metrics and 150 blocks of noise, and a rest.
+const BRIEF: [(&str, &str); 5] = [
+    ("duration_s = 3.0", "duration_s = 1.2"),
+    ("uniform = [0.4, 2.0]", "uniform = [0.4, 1.1]"),
+    ("uniform = [0.5, 2.0]", "uniform = [0.5, 1.1]"),
+    ("1.0007", "0.7007"),
+    ("1.5003", "0.5003"),
+];
+
+/// Changes of [`mixed`]: the same signals on all channels, so that the axes share their shaders; these take long to compile.
+const ALIKE: [(&str, &str); 3] = [
+    ("channels = [3]", "channels = \"all\""),
+    ("channels = [1, 3, 5] ", "channels = \"all\" "),
+    ("channels = [1, 2, 6]", "channels = \"all\""),
+];
+
+/// Flies a campaign batch by batch.
+fn fly_all(flyer: &mut GpuFlyer<'_>, campaign: &Campaign) -> Result<Vec<Flown>, GpuError> {
     let mut flown = Vec::new();
     let mut first = 0;
     while first < campaign.episodes {
-        let next = (first + flyer.batch()).min(campaign.episodes);
-        flown.extend(flyer.fly(first..next, &|_| ()).unwrap());
+        let next = first.saturating_add(flyer.batch()).min(campaign.episodes);
+        flown.extend(flyer.fly(first..next, &|_| ())?);
         first = next;
     }
-    flown
+    Ok(flown)
 }
 
-#[test]
-fn gpu_episodes_agree_with_the_reference() {
-    let Some(gpu) = gpu_or_skip() else { return };
-    let campaign = campaign("smoke");
-    let flown = fly(&gpu, &campaign, Tuning::default());
-    let gains = GainSet::obtain(&campaign).unwrap();
-    let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
-    let expected = cpu.fly(0..campaign.episodes, &|_| ());
-    let pairs = flown.iter().zip(&expected).flat_map(|(gpu, cpu)| {
-        assert_eq!(gpu.episode, cpu.episode);
-        gpu.outcomes
-            .iter()
-            .flatten()
-            .zip(cpu.outcomes.iter().flatten())
-    });
-    for (gpu, cpu) in pairs {
-        assert_eq!(gpu.failed_step, cpu.failed_step);
-        for (gpu, cpu) in gpu.channels.iter().zip(&cpu.channels) {
-            assert!((gpu.max_abs - cpu.max_abs).abs() <= 2e-4);
-            assert!((gpu.rmse - cpu.rmse).abs() <= 1e-4 * cpu.rmse);
-        }
-    }
+/// Flies a campaign on the GPU.
+fn fly(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<Flown> {
+    let mut flyer = GpuFlyer::new(gpu, campaign, gains, tuning).unwrap();
+    fly_all(&mut flyer, campaign).unwrap()
 }

@@ -8,6 +8,8 @@
 //! | `statistics` | estimators against published values, and their coverage |
 //! | `path` | the waypoint reference |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
+//! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
+//! | `flight` | flights whose GPU fails |
 //! | `lanes` | elementary functions, phases and selections on every lane type |
 //! | `model` | order of the integration, limits, noise, draws |
 //! | `campaigns` | every shipped campaign; what the paper claims |
@@ -31,6 +33,7 @@ mod common;
 
 mod campaigns;
 mod determinism;
+mod flight;
 mod gpu;
 mod lanes;
 mod lapack;

@@ -67,8 +67,10 @@ pub struct AdapterReport {
 pub enum Wanted<'a> {
     /// The best hardware one.
     Hardware,
-    /// The best of those whose name contains this, whatever the case; software ones too.
+    /// The one of this name, else the best of those whose name contains it, whatever the case; software ones too.
     Named(&'a str),
+    /// This one, with the same driver.
+    Same(&'a Adapter),
 }
 
 /// All adapters, the best first, with what `--backend auto` makes of them.
@@ -109,30 +111,42 @@ pub fn adapters() -> Vec<AdapterReport> {
         .collect()
 }
 
-/// The adapter that is wanted.
+/// The adapters that are wanted, the best first; at least one.
 pub(super) fn find(
     wanted: Wanted<'_>,
     memory_percent: u8,
-) -> Result<(wgpu::Adapter, Adapter), GpuError> {
-    let found = found(memory_percent);
-    let names: Vec<String> = found.iter().map(|one| one.get_info().name).collect();
-    found
+) -> Result<Vec<(wgpu::Adapter, Adapter)>, GpuError> {
+    let mut found: Vec<(wgpu::Adapter, Adapter)> = found(memory_percent)
         .into_iter()
         .map(|found| {
             let adapter = describe(&found.get_info());
             (found, adapter)
         })
-        .find(|(_, adapter)| match wanted {
-            Wanted::Hardware => adapter.kind.is_hardware(),
-            Wanted::Named(name) => adapter.name.to_lowercase().contains(&name.to_lowercase()),
-        })
-        .ok_or_else(|| match wanted {
-            Wanted::Hardware => GpuError::NoHardware { found: names },
-            Wanted::Named(name) => GpuError::NoSuchAdapter {
-                name: name.to_string(),
-                found: names,
-            },
-        })
+        .collect();
+    let names: Vec<String> = found.iter().map(|(_, own)| own.name.clone()).collect();
+    match wanted {
+        Wanted::Hardware => found.retain(|(_, own)| own.kind.is_hardware()),
+        Wanted::Same(adapter) => found.retain(|(_, own)| own == adapter),
+        Wanted::Named(name) => {
+            let name = name.to_lowercase();
+            found.retain(|(_, own)| own.name.to_lowercase().contains(&name));
+            found.sort_by_key(|(_, own)| own.name.to_lowercase() != name);
+        }
+    }
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    Err(match wanted {
+        Wanted::Hardware => GpuError::NoHardware { found: names },
+        Wanted::Named(name) => GpuError::NoSuchAdapter {
+            name: name.to_string(),
+            found: names,
+        },
+        Wanted::Same(adapter) => GpuError::Gone {
+            name: adapter.name.clone(),
+            driver: adapter.driver.clone(),
+        },
+    })
 }
 
 /// All adapters, in the order of their kinds; a device that is reached through several interfaces comes once for each.

@@ -10,7 +10,10 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Share of the device's free memory that a run may take, percent: an allocation beyond is refused, which is better than a
 /// driver that swaps or fails later.
-pub(super) const MEMORY_PERCENT: u8 = 95;
+pub(super) const MEMORY_PERCENT: u8 = 80;
+/// Words that are on their way to the device at once: what waits for the next submission lies in memory that the device can
+/// map, which is small on some cards.
+const UPLOAD: usize = 4 << 20;
 
 /// An open device.
 pub struct Gpu {
@@ -44,7 +47,17 @@ impl Gpu {
     /// As [`Gpu::open`].
     #[doc(hidden)]
     pub fn open_within(wanted: Wanted<'_>, memory_percent: u8) -> Result<Self, GpuError> {
-        let (found, adapter) = adapter::find(wanted, memory_percent)?;
+        let mut refused = None;
+        for (found, adapter) in adapter::find(wanted, memory_percent)? {
+            match Self::open_adapter(&found, adapter) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => refused = refused.or(Some(error)),
+            }
+        }
+        Err(refused.unwrap_or(GpuError::NoHardware { found: Vec::new() }))
+    }
+
+    fn open_adapter(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
         let request = wgpu::DeviceDescriptor {
             required_limits: found.limits(),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
@@ -63,7 +76,7 @@ impl Gpu {
             let message = format!("{reason:?}: {message}");
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
         });
-        // What no scope catches is a consequence of a lost device, which is told of on its own; the default is to panic.
+        // All work is done in scopes; what comes outside of them, when buffers are dropped on a lost device, would panic.
         device.on_uncaptured_error(Arc::new(|_| ()));
         Ok(Self {
             adapter,
@@ -102,10 +115,16 @@ impl Gpu {
         ]
         .map(|filter| self.device.push_error_scope(filter));
         let done = work();
-        // Scopes are popped in the reverse order; the last error found is the outermost.
+        // Scopes are popped in the reverse order. A buffer for which there is no memory is invalid wherever it is bound, so
+        // that lack of memory, which is popped first, is the cause of what else went wrong.
         let mut error = None;
         for scope in scopes.into_iter().rev() {
-            error = pollster::block_on(scope.pop()).or(error);
+            let popped = pollster::block_on(scope.pop());
+            error = error.or(popped);
+        }
+        if error.is_some() {
+            // A loss is told of when the device is polled.
+            self.poll(wgpu::PollType::Poll).ok();
         }
         self.alive()?;
         error.map_or(Ok(done), |error| Err(failed(error)))
@@ -185,11 +204,43 @@ impl Gpu {
         })
     }
 
-    /// Submits commands and waits until they are done.
-    pub(super) fn submit(&self, commands: wgpu::CommandBuffer) -> Result<(), GpuError> {
+    /// Writes words to a buffer, piece by piece, so that little of them waits in mapped memory.
+    pub(super) fn upload(&self, buffer: &wgpu::Buffer, words: &[u32]) -> Result<(), GpuError> {
+        for (k, piece) in words.chunks(UPLOAD).enumerate() {
+            self.write(buffer, bytes(k * UPLOAD), piece)?;
+            self.submit(|_| ())?;
+        }
+        Ok(())
+    }
+
+    /// Writes to a buffer, before whatever is submitted next.
+    pub(super) fn write<T: bytemuck::NoUninit>(
+        &self,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+        values: &[T],
+    ) -> Result<(), GpuError> {
         self.checked(
             || {
-                self.queue.submit([commands]);
+                let bytes = bytemuck::cast_slice(values);
+                self.queue.write_buffer(buffer, offset, bytes);
+            },
+            |error| self.driver_error(error),
+        )
+    }
+
+    /// Records commands, submits them and waits until they are done.
+    pub(super) fn submit(
+        &self,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) -> Result<(), GpuError> {
+        self.checked(
+            || {
+                let mut encoder = self
+                    .device
+                    .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                record(&mut encoder);
+                self.queue.submit([encoder.finish()]);
                 self.wait()
             },
             |error| self.driver_error(error),
@@ -197,14 +248,24 @@ impl Gpu {
     }
 
     fn wait(&self) -> Result<(), GpuError> {
-        let waited = self.device.poll(wgpu::PollType::Wait {
+        self.alive()?;
+        self.poll(wgpu::PollType::Wait {
             submission_index: None,
             timeout: Some(PATIENCE),
-        });
+        })
+    }
+
+    fn poll(&self, poll: wgpu::PollType) -> Result<(), GpuError> {
+        let polled = lost_if_panics(|| self.device.poll(poll).map_err(|error| error.to_string()));
         self.alive()?;
-        waited
-            .map(|_| ())
-            .map_err(|error| self.driver_error(format!("{error} after {} s", PATIENCE.as_secs())))
+        match polled {
+            Ok(Ok(_)) => Ok(()),
+            Ok(Err(error)) => Err(self.driver_error(error)),
+            Err(reason) => {
+                *self.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
+                self.alive()
+            }
+        }
     }
 
     /// The first words of a buffer, by way of a read-back buffer.
@@ -215,9 +276,7 @@ impl Gpu {
         words: usize,
     ) -> Result<Vec<u32>, GpuError> {
         let size = bytes(words);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(from, 0, by, 0, size);
-        self.submit(encoder.finish())?;
+        self.submit(|encoder| encoder.copy_buffer_to_buffer(from, 0, by, 0, size))?;
         let mapped = Arc::new(Mutex::new(None));
         let told = Arc::clone(&mapped);
         by.map_async(wgpu::MapMode::Read, 0..size, move |result| {
@@ -240,7 +299,28 @@ impl Gpu {
     }
 }
 
+/// Does something that panics if the driver has lost the device: wgpu knows no other way to tell of it while it waits.
+fn lost_if_panics<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or(panic.downcast_ref::<&str>().copied());
+        text.unwrap_or("the driver gave no reason").to_string()
+    })
+}
+
 /// Bytes of a number of words.
 pub(super) fn bytes(words: usize) -> u64 {
     4 * words as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lost_if_panics;
+
+    #[test]
+    fn a_panic_while_waiting_becomes_a_reason() {
+        assert_eq!(lost_if_panics(|| 3), Ok(3));
+        let lost = lost_if_panics(|| -> u32 { panic!("parent device is {}", "lost") });
+        assert_eq!(lost, Err("parent device is lost".to_string()));
+    }
 }

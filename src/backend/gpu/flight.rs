@@ -1,35 +1,26 @@
 //! Flying batches of episodes: draws up, spans of steps, outcomes down.
 
+use super::GpuError;
+use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
-use super::shader::Shape;
+use super::group::{ENTRIES, Entry, Group, binding_layout, shape};
 use super::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span, word};
-use super::{GpuError, device};
 use crate::backend::Flown;
-use crate::campaign::{Campaign, ObserverStart};
+use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
 use crate::model::Shown;
-use crate::model::episode::{AgentOutcome, Controller, Model, Part, PlantKind};
+use crate::model::episode::{AgentOutcome, Controller, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// Invocations that a workgroup should have: several warps, and several workgroups on each multiprocessor.
-const WORKGROUP: usize = 256;
-/// Episodes that a workgroup has at most.
-const MAX_LANES: usize = 64;
-/// Episodes that a batch has at most: enough to fill the largest cards several times.
-const MAX_BATCH: u32 = 32_768;
-/// Device memory that the buffers of a batch take at most, bytes.
-const MEMORY: u64 = 1 << 30;
-/// Bytes of a reference table that are on the device at once.
-const TABLE: usize = 32 << 20;
 /// What a dispatch should take: short beside the seconds after which a display driver resets the device, long beside the
 /// cost of a submission.
 const DISPATCH: Duration = Duration::from_millis(100);
 /// Steps of the first dispatch, before anything is known of the device.
-const FIRST_STEPS: u32 = 16;
+const FIRST_STEPS: u32 = 4;
 /// Samples of a trace between two read-backs.
 const SAMPLES: u32 = 64;
 
@@ -46,7 +37,7 @@ pub struct Tuning {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GpuTimes {
-    /// Opening the device's pipelines: shaders to machine code.
+    /// Shaders to machine code.
     pub compile_s: f64,
     /// Drawing episodes and sending them.
     pub upload_s: f64,
@@ -68,52 +59,6 @@ pub struct GpuFlyer<'g> {
     /// Steps of the next dispatch.
     steps: u32,
     times: GpuTimes,
-}
-
-/// A group of channels under one controller, and its shaders.
-struct Group {
-    /// Which of the model's groups.
-    part: usize,
-    controller: usize,
-    shape: Shape,
-    pipelines: [wgpu::ComputePipeline; 4],
-    setting: wgpu::Buffer,
-}
-
-/// The entry points, in the order of [`Group::pipelines`].
-#[derive(Clone, Copy)]
-enum Entry {
-    Start,
-    Advance,
-    Show,
-    Finish,
-}
-
-const ENTRIES: [&str; 4] = ["start", "advance", "show", "finish"];
-
-/// What a batch needs on the device.
-struct Buffers {
-    batch: usize,
-    spans: wgpu::Buffer,
-    /// Of each of the model's groups; all controllers read the same.
-    shared: Vec<SharedBuffers>,
-    /// Of each group under each controller.
-    own: Vec<OwnBuffers>,
-    /// The steps whose references are on the device.
-    window: Range<u32>,
-    /// Steps that a window has at most.
-    window_steps: u32,
-}
-
-struct SharedBuffers {
-    draws: wgpu::Buffer,
-    table: wgpu::Buffer,
-}
-
-struct OwnBuffers {
-    output: wgpu::Buffer,
-    read_back: wgpu::Buffer,
-    bindings: wgpu::BindGroup,
 }
 
 /// What is told of an instant of a trace.
@@ -176,10 +121,10 @@ impl<'g> GpuFlyer<'g> {
         tuning: Tuning,
         rewrite: &dyn Fn(String) -> String,
     ) -> Result<Self, GpuError> {
-        let start = Instant::now();
         let model: Model<f32> = Model::new(campaign);
         let controllers: Vec<_> = gains.iter().map(Controller::new).collect();
         let layout = binding_layout(gpu);
+        let start = Instant::now();
         let mut groups: Vec<Group> = Vec::new();
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
@@ -191,8 +136,11 @@ impl<'g> GpuFlyer<'g> {
                     None => gpu.compile(&rewrite(shape.text()), &layout, ENTRIES)?,
                 };
                 let bytes = words::setting(campaign, part, gains);
-                let setting = gpu.buffer(bytes.len().div_ceil(4), Use::Uniform);
-                gpu.queue.write_buffer(&setting, 0, &bytes);
+                let setting = gpu.checked(
+                    || gpu.buffer(bytes.len().div_ceil(4), Use::Uniform),
+                    |error| gpu.driver_error(error),
+                )?;
+                gpu.write(&setting, 0, &bytes)?;
                 groups.push(Group {
                     part: number,
                     controller,
@@ -270,7 +218,7 @@ impl<'g> GpuFlyer<'g> {
         self.times.kernel_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let outcomes = self.outcomes(episodes.len())?;
+        let outcomes = self.outcomes(&episodes)?;
         self.times.read_back_s += start.elapsed().as_secs_f64();
         Ok(episodes
             .into_iter()
@@ -292,19 +240,15 @@ impl<'g> GpuFlyer<'g> {
     ) -> Result<Vec<Flown>, GpuError> {
         let campaign = &self.model.campaign;
         let (steps, every) = (campaign.time.steps, every.max(1));
+        if episodes.is_empty() {
+            return Ok(Vec::new());
+        }
         let episodes: Vec<Episode> = episodes
             .iter()
             .map(|&episode| draw(campaign, episode))
             .collect();
         let samples = word(self.samples(episodes.len()));
-        self.buffers = Buffers::new(
-            self.gpu,
-            &self.layout,
-            &self.groups,
-            &self.model,
-            episodes.len(),
-            samples as usize,
-        )?;
+        self.allocate(episodes.len(), samples as usize)?;
         self.load(&episodes)?;
         let mut instants = (0..steps).step_by(every as usize).chain([steps]).peekable();
         while instants.peek().is_some() {
@@ -340,12 +284,19 @@ impl<'g> GpuFlyer<'g> {
                 });
             }
         }
-        let outcomes = self.outcomes(episodes.len())?;
+        let outcomes = self.outcomes(&episodes)?;
         Ok(episodes
             .into_iter()
             .zip(outcomes)
             .map(|(episode, outcomes)| Flown { episode, outcomes })
             .collect())
+    }
+
+    /// Replaces the buffers.
+    fn allocate(&mut self, batch: usize, samples: usize) -> Result<(), GpuError> {
+        let (groups, model) = (&self.groups, &self.model);
+        self.buffers = Buffers::new(self.gpu, &self.layout, groups, model, batch, samples)?;
+        Ok(())
     }
 
     /// Samples of so many episodes that fit the outputs.
@@ -360,6 +311,10 @@ impl<'g> GpuFlyer<'g> {
 
     /// Sends the draws of a batch and sets the initial state.
     fn load(&mut self, episodes: &[Episode]) -> Result<(), GpuError> {
+        // A trace leaves smaller buffers than a batch needs.
+        if episodes.len() > self.buffers.batch {
+            self.allocate(episodes.len(), 0)?;
+        }
         for (number, (part, buffers)) in self
             .model
             .parts
@@ -372,32 +327,32 @@ impl<'g> GpuFlyer<'g> {
             };
             let (campaign, first) = (&self.model.campaign, part.channels.start);
             let draws = words::draws(campaign, &group.shape, first, episodes);
-            self.gpu
-                .queue
-                .write_buffer(&buffers.draws, 0, bytemuck::cast_slice(&draws));
+            self.gpu.upload(&buffers.draws, &draws)?;
         }
         self.dispatch(episodes.len(), Entry::Start, 0..0, 0)
     }
 
     /// Reads how a batch ended, `[episode][controller][agent]`.
-    fn outcomes(&mut self, episodes: usize) -> Result<Vec<Vec<Vec<AgentOutcome>>>, GpuError> {
+    fn outcomes(&mut self, episodes: &[Episode]) -> Result<Vec<Vec<Vec<AgentOutcome>>>, GpuError> {
         let campaign = &self.model.campaign;
         let steps = campaign.time.steps;
         let blank = vec![AgentOutcome::blank(); campaign.team];
-        let mut outcomes = vec![vec![blank; self.controllers.len()]; episodes];
-        self.dispatch(episodes, Entry::Finish, steps..steps, 0)?;
+        let mut outcomes = vec![vec![blank; self.controllers.len()]; episodes.len()];
+        self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
         for (group, buffers) in self.groups.iter().zip(&self.buffers.own) {
-            let words = group.invocations(episodes) * OUTCOME_WORDS;
+            let words = group.invocations(episodes.len()) * OUTCOME_WORDS;
             let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
+            let agents = outcomes
+                .iter_mut()
+                .map(|controllers| &mut controllers[group.controller]);
             words::take_outcomes(
                 &self.model.campaign,
                 &group.shape,
                 self.model.parts[group.part].channels.start,
                 &words,
-                outcomes
-                    .iter_mut()
-                    .map(|controllers| &mut controllers[group.controller]),
-            );
+                episodes.iter().map(|episode| episode.index).zip(agents),
+            )
+            .map_err(|error| self.gpu.driver_error(error))?;
         }
         Ok(outcomes)
     }
@@ -431,8 +386,10 @@ impl<'g> GpuFlyer<'g> {
         self.dispatch(episodes, Entry::Show, step..step, sample)?;
         let mut first = step;
         while first < next {
-            let until = first.saturating_add(self.buffers.window_steps).min(next);
+            let until = first.saturating_add(self.steps).min(next);
+            let began = Instant::now();
             self.dispatch(episodes, Entry::Advance, first..until, 0)?;
+            self.adapt(until - first, began.elapsed());
             first = until;
         }
         Ok(())
@@ -447,41 +404,35 @@ impl<'g> GpuFlyer<'g> {
         sample: u32,
     ) -> Result<(), GpuError> {
         if matches!(entry, Entry::Advance | Entry::Show) {
-            self.cover(&span);
+            self.cover(&span)?;
         }
         let stride = span_stride(self.gpu);
-        for (k, group) in self.groups.iter().enumerate() {
+        let mut spans = vec![0; stride * self.groups.len()];
+        for (group, bytes) in self.groups.iter().zip(spans.chunks_mut(stride)) {
             let span = Span {
                 first: span.start,
                 until: span.end,
                 table_first: 2 * span.start.saturating_sub(self.buffers.window.start),
                 output_first: sample * word(group.invocations(episodes) * SHOWN_WORDS),
             };
-            self.gpu.queue.write_buffer(
-                &self.buffers.spans,
-                (k * stride) as u64,
-                bytemuck::bytes_of(&span),
-            );
+            bytes[..size_of::<Span>()].copy_from_slice(bytemuck::bytes_of(&span));
         }
-        let mut encoder = self
-            .gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        for (k, (group, buffers)) in self.groups.iter().zip(&self.buffers.own).enumerate() {
-            pass.set_pipeline(&group.pipelines[entry as usize]);
-            pass.set_bind_group(0, &buffers.bindings, &[word(k * stride)]);
-            pass.dispatch_workgroups(word(episodes.div_ceil(group.shape.lanes)), 1, 1);
-        }
-        drop(pass);
-        self.gpu.submit(encoder.finish())
+        self.gpu.write(&self.buffers.spans, 0, &spans)?;
+        self.gpu.submit(|encoder| {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for (k, (group, buffers)) in self.groups.iter().zip(&self.buffers.own).enumerate() {
+                pass.set_pipeline(&group.pipelines[entry as usize]);
+                pass.set_bind_group(0, &buffers.bindings, &[word(k * stride)]);
+                pass.dispatch_workgroups(word(episodes.div_ceil(group.shape.lanes)), 1, 1);
+            }
+        })
     }
 
     /// Sees to it that the references of a span are on the device.
-    fn cover(&mut self, span: &Range<u32>) {
+    fn cover(&mut self, span: &Range<u32>) -> Result<(), GpuError> {
         let window = &self.buffers.window;
         if !window.is_empty() && window.start <= span.start && span.end <= window.end {
-            return;
+            return Ok(());
         }
         let steps = self.model.campaign.time.steps;
         let end = span
@@ -492,279 +443,9 @@ impl<'g> GpuFlyer<'g> {
             let stride = self.model.campaign.team * part.channels.len();
             let rows =
                 &part.table[2 * span.start as usize * stride..(2 * end as usize + 1) * stride];
-            self.gpu
-                .queue
-                .write_buffer(&buffers.table, 0, bytemuck::cast_slice(rows));
+            self.gpu.write(&buffers.table, 0, rows)?;
         }
         self.buffers.window = span.start..end;
+        Ok(())
     }
-}
-
-impl Group {
-    /// Invocations of a dispatch.
-    fn invocations(&self, episodes: usize) -> usize {
-        episodes.div_ceil(self.shape.lanes) * self.shape.workgroup()
-    }
-}
-
-impl Buffers {
-    /// Buffers for as many of `batch` episodes as the device has memory for.
-    fn largest(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        groups: &[Group],
-        model: &Model<f32>,
-        mut batch: usize,
-    ) -> Result<Self, GpuError> {
-        let least = groups.iter().map(|group| group.shape.lanes).max();
-        loop {
-            match Self::new(gpu, layout, groups, model, batch, 0) {
-                Err(GpuError::OutOfMemory { .. }) if Some(batch) > least => batch /= 2,
-                result => return result,
-            }
-        }
-    }
-
-    fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        groups: &[Group],
-        model: &Model<f32>,
-        batch: usize,
-        samples: usize,
-    ) -> Result<Self, GpuError> {
-        let window_steps = groups
-            .iter()
-            .map(|group| window_steps(group, gpu, model.campaign.time.steps))
-            .min()
-            .unwrap_or(1);
-        let sizes = |group: &Group| Sizes::new(group, batch, samples, window_steps);
-        let words: usize = groups.iter().map(|group| sizes(group).total()).sum();
-        gpu.checked(
-            || {
-                let spans = gpu.buffer(span_stride(gpu) / 4 * groups.len(), Use::Uniform);
-                // Every controller's groups have the same draws and references.
-                let shared: Vec<SharedBuffers> = (0..model.parts.len())
-                    .filter_map(|part| groups.iter().find(|group| group.part == part))
-                    .map(|group| SharedBuffers {
-                        draws: gpu.buffer(sizes(group).draws, Use::Storage),
-                        table: gpu.buffer(sizes(group).table, Use::Storage),
-                    })
-                    .collect();
-                let own = groups
-                    .iter()
-                    .map(|group| {
-                        let shared = &shared[group.part];
-                        OwnBuffers::new(gpu, layout, group, shared, &spans, &sizes(group))
-                    })
-                    .collect();
-                Self {
-                    batch,
-                    spans,
-                    shared,
-                    own,
-                    window: 0..0,
-                    window_steps,
-                }
-            },
-            |error| match error {
-                wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory {
-                    adapter: gpu.adapter().name.clone(),
-                    bytes: device::bytes(words),
-                    episodes: batch,
-                },
-                other => gpu.driver_error(other),
-            },
-        )
-    }
-}
-
-/// Words of a group's buffers.
-struct Sizes {
-    draws: usize,
-    state: usize,
-    table: usize,
-    output: usize,
-}
-
-impl Sizes {
-    fn new(group: &Group, batch: usize, samples: usize, window_steps: u32) -> Self {
-        let shape = &group.shape;
-        let words = shape.words();
-        let invocations = group.invocations(batch);
-        Self {
-            draws: invocations * words.drawn(),
-            state: invocations * words.stored(),
-            table: (2 * window_steps as usize + 1) * shape.team * shape.channels * 4,
-            output: invocations * OUTCOME_WORDS.max(samples * SHOWN_WORDS),
-        }
-    }
-
-    fn total(&self) -> usize {
-        self.draws + self.state + self.table + 2 * self.output
-    }
-}
-
-impl OwnBuffers {
-    fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        group: &Group,
-        shared: &SharedBuffers,
-        spans: &wgpu::Buffer,
-        sizes: &Sizes,
-    ) -> Self {
-        let state = gpu.buffer(sizes.state, Use::Storage);
-        let output = gpu.buffer(sizes.output, Use::Storage);
-        let span = wgpu::BufferBinding {
-            buffer: spans,
-            offset: 0,
-            size: wgpu::BufferSize::new(size_of::<Span>() as u64),
-        };
-        let resources = [
-            group.setting.as_entire_binding(),
-            wgpu::BindingResource::Buffer(span),
-            shared.draws.as_entire_binding(),
-            state.as_entire_binding(),
-            shared.table.as_entire_binding(),
-            output.as_entire_binding(),
-        ];
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout,
-            entries: &entries,
-        });
-        Self {
-            read_back: gpu.buffer(sizes.output, Use::ReadBack),
-            output,
-            bindings,
-        }
-    }
-}
-
-/// The bindings of shaders/episode.wgsl.
-fn binding_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    use wgpu::BufferBindingType::{Storage, Uniform};
-    let (read, write) = (Storage { read_only: true }, Storage { read_only: false });
-    let kinds = [Uniform, Uniform, read, write, read, write];
-    let entries: Vec<_> = (0..)
-        .zip(kinds)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty,
-                // The span moves from group to group.
-                has_dynamic_offset: binding == 1,
-                min_binding_size: None,
-            },
-            count: None,
-        })
-        .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &entries,
-        })
-}
-
-/// The shape of a part's shaders on this adapter.
-fn shape(gpu: &Gpu, campaign: &Campaign, part: &Part<f32>, ftc: bool) -> Result<Shape, GpuError> {
-    let first = part.channels.start;
-    let episode = draw(campaign, 0);
-    let (counts, noise_entries) = match part.plant {
-        PlantKind::Axis => words::signals::<1>(campaign, first, &episode),
-        PlantKind::Attitude => words::signals::<3>(campaign, first, &episode),
-        PlantKind::Thrust => words::signals::<6>(campaign, first, &episode),
-    };
-    let limits = gpu.limits();
-    let mut shape = Shape {
-        plant: part.plant,
-        channels: part.channels.len(),
-        team: campaign.team,
-        lanes: MAX_LANES,
-        ftc,
-        coupled: campaign.is_coupled(),
-        observer_measured: campaign.initial.observer == ObserverStart::Measured,
-        counts,
-        noise_entries,
-    };
-    while shape.lanes > 1 && shape.workgroup() > WORKGROUP {
-        shape.lanes /= 2;
-    }
-    for (what, needed, limit) in [
-        (
-            "a team in one workgroup, in invocations,",
-            shape.workgroup(),
-            limits.max_compute_invocations_per_workgroup,
-        ),
-        (
-            "a team in one workgroup, in bytes of its memory,",
-            shape.shared_bytes(),
-            limits.max_compute_workgroup_storage_size,
-        ),
-    ] {
-        if needed as u64 > u64::from(limit) {
-            return Err(GpuError::TooLarge {
-                adapter: gpu.adapter().name.clone(),
-                what,
-                needed: needed as u64,
-                limit: u64::from(limit),
-            });
-        }
-    }
-    Ok(shape)
-}
-
-/// Bytes that a storage buffer may have.
-fn storage_limit(gpu: &Gpu) -> u64 {
-    let limits = gpu.limits();
-    limits
-        .max_storage_buffer_binding_size
-        .min(limits.max_buffer_size)
-        .min(u64::from(u32::MAX))
-}
-
-/// Steps whose references fit the table on the device.
-fn window_steps(group: &Group, gpu: &Gpu, steps: u32) -> u32 {
-    let row = 16 * group.shape.team * group.shape.channels;
-    let bytes = TABLE.min(usize::try_from(storage_limit(gpu)).unwrap_or(TABLE));
-    word((bytes / row).saturating_sub(1) / 2).clamp(1, steps)
-}
-
-/// Bytes from one span to the next.
-fn span_stride(gpu: &Gpu) -> usize {
-    gpu.limits().min_uniform_buffer_offset_alignment as usize
-}
-
-/// Episodes of a batch: what is asked for, or what fills the device, within the limits of buffers and memory.
-fn batch(gpu: &Gpu, groups: &[Group], episodes: u32, tuning: Tuning) -> usize {
-    let limit = storage_limit(gpu);
-    let per_episode = |group: &Group| {
-        let sizes = Sizes::new(group, group.shape.lanes, 0, 0);
-        let largest = sizes.state.max(sizes.draws).max(sizes.output);
-        (
-            device::bytes(largest.div_ceil(group.shape.lanes)),
-            device::bytes(sizes.total().div_ceil(group.shape.lanes)),
-        )
-    };
-    let fits = groups
-        .iter()
-        .map(|group| limit / per_episode(group).0)
-        .min()
-        .unwrap_or(1);
-    let total: u64 = groups.iter().map(|group| per_episode(group).1).sum();
-    // Whole blocks, so that the limits hold for the padding too.
-    let lanes = groups
-        .iter()
-        .map(|group| group.shape.lanes as u64)
-        .max()
-        .unwrap_or(1);
-    let most = (fits.min(MEMORY / total) / lanes * lanes).max(1);
-    let wanted = tuning.batch.unwrap_or(MAX_BATCH).min(episodes).max(1);
-    usize::try_from(most.min(u64::from(wanted))).unwrap_or(usize::MAX)
 }

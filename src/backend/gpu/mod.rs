@@ -2,15 +2,21 @@
 //! names wgpu.
 //!
 //! An invocation is one channel of one agent in one episode under one controller; a workgroup holds the channels that act on
-//! each other, of whole teams. All controllers of a batch fly in one dispatch, on the same draws. The state stays on the
-//! device while the steps are dispatched in spans short enough for a display driver; neither the spans nor the batches show in
-//! the result. shaders/README.md counts registers, bytes and operations.
+//! each other, of whole teams. The controllers of a batch fly side by side in one submission, on the same draws. The state
+//! stays on the device while the steps are submitted in spans short enough for a display driver; neither the spans nor the
+//! batches show in the result. shaders/README.md counts registers, bytes and operations.
 
 mod adapter;
+mod buffers;
 mod device;
 mod flight;
+mod group;
 pub(crate) mod shader;
 pub(crate) mod words;
+
+#[cfg(test)]
+#[path = "../../../tests/probes/mod.rs"]
+mod probes;
 
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
 pub use device::Gpu;
@@ -41,10 +47,16 @@ pub enum GpuError {
         /// Names of the adapters that there are.
         found: Vec<String>,
     },
+    /// An adapter that there was is not here, or has another driver.
+    #[error("{name} with the driver {driver} is not here")]
+    Gone {
+        /// The adapter.
+        name: String,
+        /// Its driver.
+        driver: String,
+    },
     /// The adapter gives no device.
-    #[error(
-        "{adapter}: the driver gives no device ({reason}); use another adapter or --backend cpu"
-    )]
+    #[error("{adapter}: the driver gives no device ({reason})")]
     NoDevice {
         /// The adapter.
         adapter: String,
@@ -52,7 +64,7 @@ pub enum GpuError {
         reason: String,
     },
     /// The campaign does not fit the adapter.
-    #[error("{adapter}: {what} needs {needed}, the adapter's limit is {limit}; use --backend cpu")]
+    #[error("{adapter}: {what} needs {needed}, the adapter's limit is {limit}")]
     TooLarge {
         /// The adapter.
         adapter: String,
@@ -64,9 +76,7 @@ pub enum GpuError {
         limit: u64,
     },
     /// The driver refuses the shaders.
-    #[error(
-        "{adapter}: the shaders do not compile ({reason}); use --backend cpu, and please report this"
-    )]
+    #[error("{adapter}: the shaders do not compile ({reason}); please report this")]
     Shader {
         /// The adapter.
         adapter: String,
@@ -74,9 +84,7 @@ pub enum GpuError {
         reason: String,
     },
     /// Not even one block of episodes fits the device's memory.
-    #[error(
-        "{adapter}: out of memory with buffers of {bytes} bytes for {episodes} episodes; use --backend cpu"
-    )]
+    #[error("{adapter}: out of memory with buffers of {bytes} bytes for {episodes} episodes")]
     OutOfMemory {
         /// The adapter.
         adapter: String,
@@ -86,7 +94,7 @@ pub enum GpuError {
         episodes: usize,
     },
     /// The device went away.
-    #[error("{adapter}: the device was lost ({reason}); use --backend cpu, or run again")]
+    #[error("{adapter}: the device was lost ({reason})")]
     Lost {
         /// The adapter.
         adapter: String,
@@ -94,9 +102,7 @@ pub enum GpuError {
         reason: String,
     },
     /// Something that should not happen.
-    #[error(
-        "{adapter}: the driver reports an error ({reason}); use --backend cpu, and please report this"
-    )]
+    #[error("{adapter}: the driver reports an error ({reason}); please report this")]
     Driver {
         /// The adapter.
         adapter: String,

@@ -1,7 +1,7 @@
 //! What travels to and from the shaders of a group of channels, as 32-bit words: the setting, the draws, the outcomes.
 
 use super::shader::Shape;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, Time};
 use crate::draw::Episode;
 use crate::model::Shown;
 use crate::model::condition::{Block, Condition, Entries};
@@ -16,24 +16,24 @@ use crate::model::signal::{Signals, Switch};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
-/// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums.
-pub(crate) const OUTCOME_WORDS: usize = 12;
+/// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums, episode.
+pub(crate) const OUTCOME_WORDS: usize = 13;
 /// Words of what a channel shows: the fields of [`Shown`].
 pub(crate) const SHOWN_WORDS: usize = 10;
 /// A step that never comes.
-const NEVER: u32 = u32::MAX;
+pub(crate) const NEVER: u32 = u32::MAX;
 /// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance.
 const FIXED_WORDS: usize = 8;
 
 /// How many signals of each kind a channel has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Counts {
-    losses: usize,
-    command_biases: usize,
-    sensor_biases: usize,
-    noises: usize,
-    squares: usize,
-    sines: usize,
+    pub(crate) losses: usize,
+    pub(crate) command_biases: usize,
+    pub(crate) sensor_biases: usize,
+    pub(crate) noises: usize,
+    pub(crate) squares: usize,
+    pub(crate) sines: usize,
 }
 
 impl Counts {
@@ -333,7 +333,7 @@ fn draws_of<const NC: usize>(
 }
 
 /// The words of one channel's draw, in the order of [`Words::named`].
-fn drawn<const NC: usize>(
+pub(crate) fn drawn<const NC: usize>(
     episode: u32,
     condition: &Condition<f32, NC>,
     c: usize,
@@ -398,43 +398,56 @@ fn drawn<const NC: usize>(
 
 /// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into the
 /// outcomes of each episode's agents.
+///
+/// # Errors
+/// If the words are not of these episodes: a dispatch was not carried out, or a buffer holds something else.
 pub(crate) fn take_outcomes<'a>(
     campaign: &Campaign,
     shape: &Shape,
     first: usize,
     words: &[u32],
-    outcomes: impl Iterator<Item = &'a mut Vec<AgentOutcome>>,
-) {
-    let time = campaign.time;
+    outcomes: impl Iterator<Item = (u32, &'a mut Vec<AgentOutcome>)>,
+) -> Result<(), String> {
     let workgroup = shape.workgroup();
-    for (index, agents) in outcomes.enumerate() {
+    let outcomes: Vec<_> = outcomes.collect();
+    let each = outcomes.into_par_iter().enumerate();
+    each.try_for_each(|(index, (episode, agents))| {
         let (block, lane) = (index / shape.lanes, index % shape.lanes);
         let words = &words[block * OUTCOME_WORDS * workgroup..];
         for (agent, outcome) in agents.iter_mut().enumerate() {
             for channel in 0..shape.channels {
                 let place = shape.place(channel, agent, lane);
                 let word = |k: usize| words[k * workgroup + place];
-                let number = |k: usize| f32::from_bits(word(k));
-                let ending = Ending {
-                    failed_step: Some(word(0)).filter(|&step| step != NEVER),
-                    finite: word(1) != 0,
-                };
-                let metrics = Metrics::kept(
-                    std::array::from_fn(|k| number(6 + k)),
-                    [number(4), number(5)],
-                    [last_step(word(2)), last_step(word(3))],
-                );
-                let mut taken = [ChannelOutcome::default()];
-                metrics.outcomes(
-                    time.steps,
-                    time.steps.saturating_sub(time.settle_step),
-                    time.step_s,
-                    &mut taken,
-                );
-                outcome.take(first + channel, ending, taken[0]);
+                if word(12) != episode {
+                    return Err(format!(
+                        "the outcome of episode {} stands in the place of episode {episode}",
+                        word(12)
+                    ));
+                }
+                let (ending, metrics) = ended(campaign.time, word);
+                outcome.take(first + channel, ending, metrics);
             }
         }
-    }
+        Ok(())
+    })
+}
+
+/// How a channel ended, from its outcome words.
+fn ended(time: Time, word: impl Fn(usize) -> u32) -> (Ending, ChannelOutcome) {
+    let number = |k: usize| f32::from_bits(word(k));
+    let ending = Ending {
+        failed_step: Some(word(0)).filter(|&step| step != NEVER),
+        finite: word(1) != 0,
+    };
+    let metrics = Metrics::kept(
+        std::array::from_fn(|k| number(6 + k)),
+        [number(4), number(5)],
+        [last_step(word(2)), last_step(word(3))],
+    );
+    let settled = time.steps.saturating_sub(time.settle_step);
+    let mut taken = [ChannelOutcome::default()];
+    metrics.outcomes(time.steps, settled, time.step_s, &mut taken);
+    (ending, taken[0])
 }
 
 /// What a channel shows, from its words `[word][channel][agent][episode]`.

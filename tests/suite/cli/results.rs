@@ -1,7 +1,7 @@
 //! What a good campaign gives: plans, gains, findings, verdicts and replays.
 
 use super::{Place, smoke};
-use crate::common::repository;
+use crate::common::shipped_campaigns;
 use serde_json::Value;
 use std::fs;
 
@@ -271,8 +271,8 @@ fn the_schema_knows_every_key_of_every_shipped_campaign() {
     }
     let text = schema.to_string();
     let mut keys = Vec::new();
-    for entry in fs::read_dir(repository("campaigns")).unwrap() {
-        let campaign = fs::read_to_string(entry.unwrap().path()).unwrap();
+    for path in shipped_campaigns() {
+        let campaign = fs::read_to_string(path).unwrap();
         all_keys(&toml::from_str(&campaign).unwrap(), &mut keys);
     }
     assert!(keys.len() > 100);

@@ -1,0 +1,116 @@
+//! How the program ends: exit codes, and what is said of an error.
+
+use std::process;
+use urts_mc::backend::gpu::GpuError;
+use urts_mc::flight::FlightError;
+use urts_mc::gains::GainsError;
+use urts_mc::output::OutputError;
+use urts_mc::replay::ReplayError;
+use urts_mc::run::RunError;
+
+/// How the program ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Code {
+    Done = 0,
+    Other = 1,
+    Usage = 2,
+    Synthesis = 3,
+    Unmet = 4,
+}
+
+impl From<Code> for process::ExitCode {
+    fn from(code: Code) -> Self {
+        Self::from(code as u8)
+    }
+}
+
+/// An error and the exit code that it means.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// What went wrong.
+    pub(crate) error: anyhow::Error,
+    /// How the program ends.
+    pub(crate) code: Code,
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Failure {
+    fn from(error: E) -> Self {
+        let error = error.into();
+        Self {
+            code: code_of(&error),
+            error: anyhow::Error::msg(said_once(&error)),
+        }
+    }
+}
+
+impl Failure {
+    pub(crate) fn usage(message: String) -> Self {
+        Self {
+            error: anyhow::Error::msg(message),
+            code: Code::Usage,
+        }
+    }
+}
+
+/// An error and its causes, each once: some errors quote their cause, others leave it to whoever reports them.
+fn said_once(error: &anyhow::Error) -> String {
+    error
+        .chain()
+        .map(ToString::to_string)
+        .reduce(|said, cause| {
+            if said.contains(&cause) {
+                said
+            } else {
+                format!("{said}: {cause}")
+            }
+        })
+        .unwrap_or_default()
+}
+
+fn code_of(error: &anyhow::Error) -> Code {
+    let of_gains = |error: &GainsError| {
+        if error.is_usage() {
+            Code::Usage
+        } else {
+            Code::Synthesis
+        }
+    };
+    let of_output = |error: &OutputError| {
+        if error.is_usage() {
+            Code::Usage
+        } else {
+            Code::Other
+        }
+    };
+    if error.is::<urts_mc::campaign::CampaignError>() {
+        return Code::Usage;
+    }
+    match error.downcast_ref() {
+        Some(RunError::Gains(error)) => return of_gains(error),
+        Some(RunError::Output(error)) => return of_output(error),
+        Some(RunError::Flight(error)) => return of_flight(error),
+        _ => {}
+    }
+    match error.downcast_ref() {
+        Some(ReplayError::Run(error)) => return of_output(error),
+        Some(ReplayError::Gains(error)) => return of_gains(error),
+        Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
+        None => {}
+    }
+    error
+        .downcast_ref()
+        .map(of_gains)
+        .or_else(|| error.downcast_ref().map(of_output))
+        .unwrap_or(Code::Other)
+}
+
+fn of_flight(error: &FlightError) -> Code {
+    match error {
+        FlightError::Threads { .. } => Code::Usage,
+        FlightError::NoGpu(GpuError::NoHardware { .. } | GpuError::NoSuchAdapter { .. }) => {
+            Code::Usage
+        }
+        FlightError::NoGpu(_) => Code::Other,
+        FlightError::Gpu(_) => Code::Other,
+    }
+}

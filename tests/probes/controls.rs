@@ -1,0 +1,254 @@
+//! Negative controls: a probe that cannot fail shows nothing. One change of the shaders at a time, and the probe that must
+//! notice it.
+
+use super::harness::Lab;
+use super::probes;
+
+/// A change and who must notice.
+struct Control {
+    /// The file of the old text; constants are generated.
+    file: &'static str,
+    old: &'static str,
+    new: &'static str,
+    probe: &'static str,
+}
+
+const fn control(
+    file: &'static str,
+    old: &'static str,
+    new: &'static str,
+    probe: &'static str,
+) -> Control {
+    Control {
+        file,
+        old,
+        new,
+        probe,
+    }
+}
+
+const CONTROLS: &[Control] = &[
+    control(
+        "constants",
+        "array(1.5707964f, -0.6459638f",
+        "array(1.5707964f, -0.6459618f",
+        "sin_folded",
+    ),
+    control(
+        "constants",
+        "const ROUNDS = 0xau;",
+        "const ROUNDS = 0x9u;",
+        "philox4x32",
+    ),
+    control(
+        "constants",
+        "const FAR_AWAY = 1000000000000000.0f;",
+        "const FAR_AWAY = 1001000000000000.0f;",
+        "team_sum",
+    ),
+    control(
+        "constants",
+        "const PI_LOW = -8.742278e-8f;",
+        "const PI_LOW = 8.742278e-6f;",
+        "sin_cos",
+    ),
+    control(
+        "lanes",
+        "select(other, value, value > other)",
+        "select(value, other, value < other)",
+        "lane_max",
+    ),
+    control(
+        "lanes",
+        "(phase + QUARTER_TURN) & SIGN_BIT",
+        "phase & SIGN_BIT",
+        "lane_turns_sin",
+    ),
+    control(
+        "lanes",
+        ") <= bitcast<u32>(limit)",
+        ") < bitcast<u32>(limit)",
+        "lane_within",
+    ),
+    control(
+        "math",
+        "let parity = fma(n, half, -floor(n * half));",
+        "let parity = fma(n, half, -floor(n * half + 0.5));",
+        "sin_cos",
+    ),
+    control(
+        "math",
+        "fma(f2, -0.5, tail)",
+        "fma(f2, -0.50001, tail)",
+        "ln_split",
+    ),
+    control(
+        "math",
+        "lane_select_le(0.0, x, angle, PI - angle)",
+        "lane_select_le(0.0, x, angle, PI + angle)",
+        "atan2",
+    ),
+    control("rng", "(second >> 16u)", "(second >> 17u)", "wide_product"),
+    control(
+        "integrator",
+        "stepped_sum[k] = fma(slope, h.third, stepped_sum[k]);",
+        "stepped_sum[k] = fma(slope, h.sixth, stepped_sum[k]);",
+        "stepped",
+    ),
+    control(
+        "integrator",
+        "select(h.whole, h.half, stage < 2u)",
+        "select(h.whole, h.half, stage < 3u)",
+        "stepped",
+    ),
+    control(
+        "controller",
+        "injected(4u, innovation, (f1 - f1_before) * s.z)",
+        "injected(4u, innovation, (f1_before - f1) * s.z)",
+        "step_channel",
+    ),
+    control(
+        "controller",
+        "fma(unexplained, b.y, rate - rate_hat)",
+        "fma(unexplained, b.x, rate - rate_hat)",
+        "step_channel",
+    ),
+    control(
+        "controller",
+        "setting.gains[KINDS - 1u].smoothing, is_attitude()",
+        "setting.gains[0].smoothing, is_attitude()",
+        "gains",
+    ),
+    control(
+        "plant_uav",
+        "-(cos_yaw * roll_sin_cos.x)",
+        "cos_yaw * roll_sin_cos.x",
+        "body_axis",
+    ),
+    control(
+        "plant_uav",
+        "first + (i + 2u) % 3u",
+        "first + (i + 1u) % 3u",
+        "attitude_acceleration",
+    ),
+    control(
+        "plant_uav",
+        "let limited = clamp(wanted, -limit, limit);",
+        "let limited = clamp(wanted, -limit, limit * 0.999);",
+        "plant",
+    ),
+    control(
+        "plant_uav",
+        "fma(limited - non_inertial, own.inertia.y",
+        "fma(limited + non_inertial, own.inertia.y",
+        "plant",
+    ),
+    control(
+        "signal",
+        "drawn(SWITCHES + 2u * k) <= step",
+        "drawn(SWITCHES + 2u * k) < step",
+        "switches",
+    ),
+    control(
+        "signal",
+        "sample, switch_at(NOISES + k, step), sensor",
+        "sample, switch_at(NOISES, step), sensor",
+        "signals_hold",
+    ),
+    control(
+        "signal",
+        "turn + QUARTER_TURN",
+        "turn - QUARTER_TURN",
+        "noise_pair",
+    ),
+    control(
+        "signal",
+        "squares[k].phase = squares[k].phase + squares[k].advance;",
+        "squares[k].phase = squares[k].phase + 2u * squares[k].advance;",
+        "signals_evaluate",
+    ),
+    control(
+        "metric",
+        "recent.absolute = recent.absolute + size;",
+        "recent.absolute = recent.absolute + size * 1.0001;",
+        "metrics_take",
+    ),
+    control(
+        "metric",
+        "step <= first_fault",
+        "step < first_fault",
+        "metrics_before_fault",
+    ),
+    control(
+        "group",
+        "let others = team_sum(stage) - position;",
+        "let others = team_sum(stage);",
+        "agent_respond",
+    ),
+    control(
+        "group",
+        "estimates.y - sensor_fault,",
+        "estimates.y + sensor_fault,",
+        "agent_observe",
+    ),
+    control(
+        "group",
+        "let middle = reference_row(half + 1u);",
+        "let middle = reference_row(half);",
+        "group_advance",
+    ),
+    control(
+        "group",
+        "(step + 1u) % FLUSH_STEPS == 0u",
+        "step % FLUSH_STEPS == 1u",
+        "group_advance",
+    ),
+    control(
+        "group",
+        "* (TEAM * LANES) + agent * LANES + own.lane",
+        "* (TEAM * LANES) + agent + TEAM * own.lane",
+        "slot",
+    ),
+    control(
+        "episode",
+        "stored_number(RECENT + 3u),",
+        "stored_number(RECENT + 4u),",
+        "resume",
+    ),
+    control(
+        "episode",
+        "store_number(LARGEST, largest);",
+        "store_number(LARGEST, largest_command);",
+        "keep",
+    ),
+];
+
+#[test]
+fn regress_probes_notice_a_changed_shader() {
+    let files: std::collections::BTreeSet<&str> =
+        CONTROLS.iter().map(|control| control.file).collect();
+    assert_eq!(
+        files.len(),
+        11,
+        "each file of shaders/ and the constants: {files:?}"
+    );
+    let Some(lab) = Lab::open() else { return };
+    for control in CONTROLS {
+        let probe = probes().find(|probe| probe.name == control.probe).unwrap();
+        // The text must be there, and once: the lab sees to it.
+        let compared = (probe.run)(&lab.changed(control.old, control.new));
+        let share = 100.0 * compared.wrong.len() as f64 / compared.words as f64;
+        println!(
+            "{:10} {:24} {share:.2} % of the results differ",
+            control.file, control.probe
+        );
+        assert!(
+            !compared.wrong.is_empty(),
+            "{}: {} does not notice {:?} instead of {:?}",
+            control.file,
+            control.probe,
+            control.new,
+            control.old
+        );
+    }
+}

@@ -1,0 +1,131 @@
+// Appended to the joined shaders: where a probe's inputs come from and its results go to. PROBE_FIRST, PROBE_TAKEN,
+// PROBE_GIVEN, PROBE_IMAGE and `probe_body` are generated.
+
+var<private> probe_case: u32;
+
+fn taken(k: u32) -> u32 {
+    return draws[PROBE_FIRST + probe_case * PROBE_TAKEN + k];
+}
+
+fn taken_number(k: u32) -> f32 {
+    return bitcast<f32>(taken(k));
+}
+
+fn give(k: u32, value: u32) {
+    output[probe_case * PROBE_GIVEN + k] = value;
+}
+
+fn give_number(k: u32, value: f32) {
+    give(k, bitcast<u32>(value));
+}
+
+// Input number `k` of the function that is probed.
+fn asked(k: u32) -> u32 {
+    return taken(PROBE_IMAGE + k);
+}
+
+fn number(k: u32) -> f32 {
+    return taken_number(PROBE_IMAGE + k);
+}
+
+fn numbers(k: u32) -> vec4<f32> {
+    return vec4(number(k), number(k + 1u), number(k + 2u), number(k + 3u));
+}
+
+// Result number `k` of the function that is probed.
+fn answer(k: u32, value: u32) {
+    give(PROBE_IMAGE + k, value);
+}
+
+fn answer_number(k: u32, value: f32) {
+    give_number(PROBE_IMAGE + k, value);
+}
+
+fn answer_response(response: Response) {
+    answer_number(0u, response.error_acceleration);
+    answer_number(1u, response.told);
+    answer_number(2u, response.command);
+    answer_number(3u, response.excess);
+    answer_number(4u, response.extra_rate.x);
+    answer_number(5u, response.extra_rate.y);
+}
+
+// The private state, from the image of it that the probe is given.
+fn load() {
+    for (var k = 0u; k < STATES; k++) {
+        stepped_start[k] = taken_number(k);
+        stepped_point[k] = taken_number(STATES + k);
+        stepped_sum[k] = taken_number(2u * STATES + k);
+    }
+    disturbance = taken_number(36u);
+    sensor_fault = taken_number(37u);
+    command_gain = taken_number(38u);
+    command_bias = taken_number(39u);
+    held_sensor = taken_number(40u);
+    recent = Sums(
+        taken_number(41u),
+        taken_number(42u),
+        taken_number(43u),
+        taken_number(44u),
+        taken_number(45u),
+        taken_number(46u),
+    );
+    largest = taken_number(47u);
+    largest_command = taken_number(48u);
+    outside = bitcast<i32>(taken(49u));
+    outside_before_fault = bitcast<i32>(taken(50u));
+    own.failed = taken(51u);
+    own.next_change = taken(52u);
+    signals_begin(0u);
+    for (var k = 0u; k < N_SINES; k++) {
+        sines[k].phase = taken(53u + k);
+    }
+    for (var k = 0u; k < N_SQUARES; k++) {
+        squares[k].phase = taken(53u + N_SINES + 2u * k);
+        squares[k].held = taken_number(54u + N_SINES + 2u * k);
+    }
+}
+
+// The image of the private state.
+fn leave() {
+    for (var k = 0u; k < STATES; k++) {
+        give_number(k, stepped_start[k]);
+        give_number(STATES + k, stepped_point[k]);
+        give_number(2u * STATES + k, stepped_sum[k]);
+    }
+    give_number(36u, disturbance);
+    give_number(37u, sensor_fault);
+    give_number(38u, command_gain);
+    give_number(39u, command_bias);
+    give_number(40u, held_sensor);
+    give_number(41u, recent.square);
+    give_number(42u, recent.absolute);
+    give_number(43u, recent.effort);
+    give_number(44u, recent.actuator_fault);
+    give_number(45u, recent.sensor_fault);
+    give_number(46u, recent.limited);
+    give_number(47u, largest);
+    give_number(48u, largest_command);
+    give(49u, bitcast<u32>(outside));
+    give(50u, bitcast<u32>(outside_before_fault));
+    give(51u, own.failed);
+    give(52u, own.next_change);
+    for (var k = 0u; k < N_SINES; k++) {
+        give(53u + k, sines[k].phase);
+    }
+    for (var k = 0u; k < N_SQUARES; k++) {
+        give(53u + N_SINES + 2u * k, squares[k].phase);
+        give_number(54u + N_SINES + 2u * k, squares[k].held);
+    }
+}
+
+// A scene is an episode of the workgroup; a workgroup probes one stage.
+@compute @workgroup_size(WORKGROUP)
+fn probe(
+    @builtin(local_invocation_index) local: u32,
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+) {
+    probe_case = workgroup.x * WORKGROUP + local;
+    identify(local, workgroup.x);
+    probe_body(workgroup.x % 4u, (workgroup.x * LANES + own.lane) * 7u % 1000u);
+}

@@ -1,0 +1,262 @@
+//! Which function is whose twin. Without a device: every function of the shaders has a probe, and every function of the model
+//! files that they mirror has a twin or a reason to have none.
+
+use super::{layout, probes, shapes};
+use crate::backend::gpu::group::ENTRIES;
+use std::collections::BTreeSet;
+
+/// Names of twins, `(in Rust, in WGSL)`.
+type Pairs = &'static [(&'static str, &'static str)];
+
+/// The Rust files, their text, and the functions of the shaders' file that come from them.
+const TWINS: &[(&str, &str, Pairs)] = &[
+    (
+        "lanes",
+        include_str!("../../src/model/lanes.rs"),
+        &[
+            ("max", "lane_max"),
+            ("min", "lane_min"),
+            ("select_le", "lane_select_le"),
+            ("turns_sin", "lane_turns_sin"),
+            ("unit_from_words", "lane_unit_from_words"),
+            ("ln", "lane_ln"),
+        ],
+    ),
+    (
+        "math",
+        include_str!("../../src/model/math.rs"),
+        &[
+            ("polynomial", "polynomial_4"),
+            ("polynomial", "polynomial_5"),
+            ("polynomial", "polynomial_7"),
+            ("polynomial", "polynomial_9"),
+            ("sin_folded", "sin_folded"),
+            ("sin_cos", "sin_cos"),
+            ("tanh", "tanh"),
+            ("atan2", "atan2"),
+            ("ln_split", "ln_split"),
+        ],
+    ),
+    (
+        "rng",
+        include_str!("../../src/model/rng.rs"),
+        &[
+            ("wide_product", "wide_product"),
+            ("philox4x32", "philox4x32"),
+            ("words", "address_words"),
+        ],
+    ),
+    (
+        "integrator",
+        include_str!("../../src/model/integrator.rs"),
+        &[("at", "stepped_at"), ("take", "stepped_take")],
+    ),
+    (
+        "controller",
+        include_str!("../../src/model/controller.rs"),
+        &[
+            ("measured", "channel_gains_measured"),
+            ("feedback", "feedback"),
+            ("step_channel", "step_channel"),
+            ("injected", "injected"),
+            ("fault_estimates", "fault_estimates"),
+        ],
+    ),
+    (
+        "plant_uav",
+        include_str!("../../src/model/plant_uav.rs"),
+        &[
+            ("reference", "reference"),
+            ("respond", "axis_respond"),
+            ("respond", "attitude_respond"),
+            ("respond", "thrust_respond"),
+            ("acceleration", "attitude_acceleration"),
+            ("body_axis", "body_axis"),
+            ("clamp", "clamp"),
+        ],
+    ),
+    (
+        "signal",
+        include_str!("../../src/model/signal.rs"),
+        &[
+            ("at", "switch_at"),
+            ("hold", "signals_hold"),
+            ("evaluate", "signals_evaluate"),
+            ("draw", "noise_draw"),
+        ],
+    ),
+    (
+        "metric",
+        include_str!("../../src/model/metric.rs"),
+        &[
+            ("take", "metrics_take"),
+            ("flush", "metrics_flush"),
+            ("before_fault", "metrics_before_fault"),
+        ],
+    ),
+    (
+        "group",
+        include_str!("../../src/model/group.rs"),
+        &[
+            ("respond", "agent_respond"),
+            ("observe", "agent_observe"),
+            ("begin_step", "group_begin_step"),
+            ("hold", "group_hold"),
+            ("team_sum", "team_sum"),
+            ("stage", "group_stage"),
+            ("advance", "group_advance"),
+            ("show", "group_show"),
+            ("flush", "metrics_flush"),
+        ],
+    ),
+];
+
+/// Functions of these Rust files without a twin, and why.
+const IN_RUST_ALONE: &[(&[&str], &str)] = &[
+    (&["new", "none", "zero", "kept", "key"], "made by the host"),
+    (
+        &[
+            "mul_add", "abs", "sqrt", "floor", "from_f64", "to_f64", "splat", "number",
+        ],
+        "built into WGSL",
+    ),
+    (
+        &[
+            "load",
+            "store",
+            "dispatch",
+            "run",
+            "turns",
+            "turns_from_words",
+            "first_lane",
+        ],
+        "lanes alone",
+    ),
+    (&["turns_add"], "the addition of u32"),
+    (
+        &["sin_cos", "tanh", "atan2"],
+        "in lanes.rs, those of math.rs",
+    ),
+    (
+        &[
+            "fixed_turns",
+            "fixed_turns_32",
+            "unit",
+            "inertia",
+            "non_inertial",
+        ],
+        "draws and tables are the host's",
+    ),
+    (
+        &["tabulated", "splat_row"],
+        "a row of the table is one value",
+    ),
+    (
+        &[
+            "at_start",
+            "outcomes",
+            "is_finite",
+            "step_number",
+            "finite_step",
+        ],
+        "the start's and the host's",
+    ),
+    (&["motion"], "two lines of agent_respond"),
+    (&["evaluate_ahead"], "an invocation has one agent"),
+];
+
+/// Functions of the shaders without a twin in these files: the probe says what they must do.
+const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
+    (
+        &["lane_within"],
+        "select_le of an absolute value, by its bits",
+    ),
+    (
+        &[
+            "injection",
+            "feedback_gains",
+            "smoothing",
+            "sensor_fault_input",
+            "is_attitude",
+        ],
+        "fields of ChannelGains",
+    ),
+    (&["next_onset"], "the model's list of changes"),
+    (&["signals_begin"], "as many turns_add as half steps"),
+    (&["noise_pair"], "half of draw"),
+    (&["add_to_total"], "a line of flush"),
+    (&["slot", "seen", "publish", "reference_row"], "indexing"),
+    (
+        &[
+            "drawn",
+            "drawn_number",
+            "stored",
+            "stored_number",
+            "store",
+            "store_number",
+        ],
+        "indexing of buffers",
+    ),
+    (&["identify", "resume", "keep"], "the state between spans"),
+];
+
+fn flat(listed: &[(&[&'static str], &str)]) -> BTreeSet<&'static str> {
+    listed
+        .iter()
+        .flat_map(|(names, _)| names.iter().copied())
+        .collect()
+}
+
+/// Names of the functions that a Rust file defines ahead of its tests.
+fn defined(text: &str) -> BTreeSet<&str> {
+    let text = text.split("#[cfg(test)]").next().unwrap();
+    let words = text
+        .lines()
+        .filter_map(|line| line.trim().split_once("fn "));
+    words
+        .filter(|(before, _)| ["", "pub", "pub(crate)"].contains(&before.trim()))
+        .filter_map(|(_, after)| after.split(['(', '<']).next())
+        .collect()
+}
+
+#[test]
+fn val_every_rust_function_has_a_twin_or_a_reason() {
+    let alone = flat(IN_RUST_ALONE);
+    for (file, text, twins) in TWINS {
+        let defined = defined(text);
+        assert!(defined.len() >= 3, "{file}: {defined:?}");
+        let listed: BTreeSet<&str> = twins.iter().map(|&(rust, _)| rust).collect();
+        for name in &listed {
+            assert!(defined.contains(name), "{file}.rs has no function {name}");
+        }
+        for name in defined.difference(&listed) {
+            assert!(
+                alone.contains(name),
+                "{file}.rs: {name} has neither a twin nor a reason"
+            );
+        }
+    }
+}
+
+#[test]
+fn val_every_shader_function_has_a_twin_and_a_probe() {
+    let twins = TWINS
+        .iter()
+        .flat_map(|(_, _, twins)| twins.iter().map(|&(_, wgsl)| wgsl));
+    let known: BTreeSet<&str> = twins.chain(flat(IN_WGSL_ALONE)).collect();
+    let probed: BTreeSet<&str> = probes()
+        .flat_map(|probe| probe.functions.iter().copied())
+        .collect();
+    for shape in shapes::probed() {
+        let module = layout::module(&shape);
+        let functions = module
+            .functions
+            .iter()
+            .map(|(_, function)| function.name.as_deref().unwrap());
+        let functions: BTreeSet<&str> = functions.collect();
+        assert_eq!(functions, known, "shaders (left) and the tables of twins");
+        // Entry points cannot be called; whole episodes fly through them.
+        assert_eq!(functions, probed, "shaders (left) and the table of probes");
+        assert!(ENTRIES.iter().all(|entry| !functions.contains(entry)));
+    }
+}

@@ -1,0 +1,217 @@
+//! Flights whose GPU fails: what is kept, what is said, what the CPU takes over.
+
+use crate::common::{altered, gpu_or_skip};
+use std::sync::atomic::{AtomicU32, Ordering};
+use urts_mc::backend::cpu::Precision;
+use urts_mc::backend::gpu::{Gpu, GpuError, Tuning};
+use urts_mc::campaign::Campaign;
+use urts_mc::cross_check::cross_check;
+use urts_mc::flight::{Backend, Engine, Flight, FlightError, Settings, fly};
+use urts_mc::gains::GainSet;
+use urts_mc::manifest::Manifest;
+use urts_mc::output::OutputDir;
+use urts_mc::run::{Extras, run_on};
+
+/// 24 short episodes.
+fn short() -> Campaign {
+    altered(
+        "smoke",
+        &[
+            ("episodes = 32", "episodes = 24"),
+            ("duration_s = 6.0", "duration_s = 4.5"),
+        ],
+    )
+}
+
+fn in_batches_of_eight(backend: Backend) -> Settings {
+    Settings {
+        backend,
+        tuning: Tuning {
+            batch: Some(8),
+            steps: Some(100),
+        },
+        ..Settings::cpu(Precision::F32)
+    }
+}
+
+/// Flies and takes the device away when so many episodes are done.
+fn fly_and_lose(
+    gpu: &Gpu,
+    backend: Backend,
+    lost_after: u32,
+) -> (Result<Flight, FlightError>, u32) {
+    let campaign = short();
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let told = AtomicU32::new(0);
+    let flight = fly(
+        &campaign,
+        &gains,
+        &in_batches_of_eight(backend),
+        Some(gpu),
+        &|episodes| {
+            let before = told.fetch_add(episodes, Ordering::Relaxed);
+            if before < lost_after && lost_after <= before + episodes {
+                gpu.destroy();
+            }
+        },
+    );
+    (flight, told.into_inner())
+}
+
+#[test]
+fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (flight, told) = fly_and_lose(&gpu, Backend::Auto, 12);
+    let flight = flight.unwrap();
+    assert_eq!(told, 24, "every episode is told of once");
+    let legs: Vec<(u32, u32, bool)> = flight
+        .legs
+        .iter()
+        .map(|leg| {
+            let on_gpu = matches!(leg.engine, Engine::Gpu { .. });
+            (leg.first, leg.episodes, on_gpu)
+        })
+        .collect();
+    assert_eq!(legs, [(0, 8, true), (8, 16, false)]);
+    assert_eq!(flight.interrupted, None);
+    let note = &flight.notes[0];
+    assert!(note.contains("failed after 8 of 24 episodes"), "{note}");
+    assert!(
+        note.contains("lost") && note.contains(&gpu.adapter().name),
+        "{note}"
+    );
+
+    // Both backends give nearly the same numbers, so the table is that of one flight.
+    let campaign = short();
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let whole = fly(
+        &campaign,
+        &gains,
+        &Settings::cpu(Precision::F32),
+        None,
+        &|_| (),
+    )
+    .unwrap();
+    for (own, other) in flight
+        .tables
+        .scores
+        .rmse
+        .iter()
+        .zip(&whole.tables.scores.rmse)
+    {
+        assert_eq!(own.len(), 24 * 18);
+        for (own, other) in own.iter().zip(other) {
+            assert!((own - other).abs() <= 1e-4 * other, "{own} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_gpu_that_is_lost_ends_the_run_that_asked_for_it_and_the_finished_batches_are_written() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let campaign = short();
+    let dir = tempfile::tempdir().unwrap();
+    let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
+    let told = AtomicU32::new(0);
+    let findings = run_on(
+        &campaign,
+        &in_batches_of_eight(Backend::Gpu { adapter: None }),
+        Some(&gpu),
+        Vec::new(),
+        &out,
+        Extras {
+            csv: true,
+            cross_check: None,
+        },
+        &|episodes| {
+            if told.fetch_add(episodes, Ordering::Relaxed) + episodes == 16 {
+                gpu.destroy();
+            }
+        },
+    )
+    .unwrap();
+    let manifest = &findings.manifest;
+    let reason = manifest.interrupted.as_ref().unwrap();
+    assert!(
+        reason.contains(&gpu.adapter().name) && reason.contains("lost"),
+        "{reason}"
+    );
+    // The last span of the second batch was done when the device went; its outcomes were not read back.
+    assert_eq!(manifest.episodes, 8);
+    assert!(manifest.cross_check_missing.is_some());
+    assert_eq!(manifest.episodes_asked, 24);
+    let rows = std::fs::read_to_string(out.path().join("episodes.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + 8 * 3 * 3);
+    assert_eq!(findings.summary[0].failures.n, 8);
+}
+
+#[test]
+fn a_run_that_ends_early_does_not_replace_a_longer_one() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let campaign = short();
+    let dir = tempfile::tempdir().unwrap();
+    let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
+    let settings = in_batches_of_eight(Backend::Gpu { adapter: None });
+    let told = AtomicU32::new(0);
+    let run = |gpu: Option<&Gpu>, lost_after: u32| {
+        let extras = Extras {
+            csv: false,
+            cross_check: Some(0),
+        };
+        told.store(0, Ordering::Relaxed);
+        run_on(&campaign, &settings, gpu, Vec::new(), &out, extras, &|n| {
+            if told.fetch_add(n, Ordering::Relaxed) + n >= lost_after
+                && let Some(gpu) = gpu
+            {
+                gpu.destroy();
+            }
+        })
+        .map(|findings| findings.manifest.episodes)
+    };
+    assert_eq!(run(None, u32::MAX).unwrap(), 24);
+    let said = run(Some(&gpu), 12).unwrap_err().to_string();
+    assert!(said.contains("8 episodes were finished"), "{said}");
+    assert!(said.contains("keeps the 24 of an earlier run"), "{said}");
+    assert_eq!(Manifest::read(out.path()).unwrap().episodes, 24);
+}
+
+#[test]
+fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
+    let campaign = short();
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let settings = Settings::cpu(Precision::F32);
+    let mut flight = fly(&campaign, &gains, &settings, None, &|_| ()).unwrap();
+    let check = |flight: &Flight| {
+        let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
+        cross_check(&campaign, &gains, &settings, leg, scores, None, 24).unwrap()
+    };
+    let sound = check(&flight);
+    assert!(sound.holds() && sound.compared > 24, "{sound:?}");
+    assert_eq!((sound.episodes.len(), sound.not_repeated), (24, 0));
+    // One number of one episode, off by one unit in the last place.
+    let rmse = &mut flight.tables.scores.rmse[1][7 * 18 + 5];
+    *rmse = rmse.next_up();
+    let unsound = check(&flight);
+    assert!(!unsound.holds());
+    assert_eq!(unsound.not_repeated, 1);
+}
+
+#[test]
+fn a_gpu_that_flies_nothing_is_an_error_unless_the_cpu_may_fly() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    gpu.destroy();
+    let (flight, told) = fly_and_lose(&gpu, Backend::Gpu { adapter: None }, u32::MAX);
+    assert!(matches!(
+        flight,
+        Err(FlightError::Gpu(GpuError::Lost { .. }))
+    ));
+    assert_eq!(told, 0);
+    let (flight, told) = fly_and_lose(&gpu, Backend::Auto, u32::MAX);
+    let flight = flight.unwrap();
+    assert_eq!((flight.episodes(), told, flight.legs.len()), (24, 24, 1));
+    assert!(
+        flight.notes[0].contains("after 0 of 24"),
+        "{:?}",
+        flight.notes
+    );
+}

@@ -1,0 +1,101 @@
+//! The same bits, whatever the batch, the span of steps, the order and the company.
+
+use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed};
+use crate::common::gpu_or_skip;
+use urts_mc::backend::Flown;
+use urts_mc::backend::gpu::{GpuFlyer, Tuning};
+use urts_mc::campaign::Campaign;
+use urts_mc::gains::GainSet;
+
+/// Everything at once, short: 600 steps are two flushes of the metrics and 150 blocks of noise, and something is left over.
+fn short(episodes: &str, controllers: &str) -> (Campaign, Gains) {
+    let own = [
+        ("episodes = 80", episodes),
+        ("\"ftc\", \"pid\", \"pid-tuned\"", controllers),
+        // Strong enough for some to leave the numbers.
+        ("[0.0, 1.0, 60.0]", "[0.0, 1.0, 400.0]"),
+    ];
+    let campaign = mixed(&[&BRIEF[..], &ALIKE, &own].concat());
+    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    (campaign, gains)
+}
+
+/// Flights in digits that no other number has, also where they left the numbers.
+fn digits(flown: &[Flown]) -> Vec<String> {
+    flown.iter().map(|flown| format!("{flown:?}")).collect()
+}
+
+#[test]
+fn neither_batches_nor_spans_of_steps_change_a_bit() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (campaign, gains) = short("episodes = 70", "\"ftc\"");
+    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    assert_eq!(all.len(), 70);
+    assert!(all.iter().any(|flown| flown.contains("diverged: true")));
+    // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and take all steps at once.
+    for (batch, steps) in [
+        (None, None),
+        (Some(64), Some(600)),
+        (Some(23), Some(100)),
+        (None, Some(13)),
+    ] {
+        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
+    }
+    // A shorter run, in single episodes or in single steps, is the beginning of the longer one.
+    let (campaign, gains) = short("episodes = 5", "\"ftc\"");
+    for (batch, steps) in [(Some(1), Some(100)), (None, Some(1)), (Some(3), Some(7))] {
+        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        assert!(
+            again == all[..5],
+            "batches of {batch:?}, spans of {steps:?}"
+        );
+    }
+    // The comparison can fail.
+    let mut other = campaign.clone();
+    other.seed += 1;
+    let other = digits(&fly(&gpu, &other, &gains, Tuning::default()));
+    assert!(other.iter().zip(&all).all(|(other, own)| other != own));
+}
+
+#[test]
+fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (campaign, gains) = short("episodes = 70", "\"ftc\", \"pid\"");
+    let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let all = digits(&fly_all(&mut flyer, &campaign).unwrap());
+    // 43 steps: samples fall inside blocks of noise, and the last is shorter; more samples than one read-back holds.
+    let mut trace = |episodes: &[u32], every: u32| {
+        let mut shown = vec![String::new(); episodes.len()];
+        let flown = flyer
+            .trace(episodes, every, &mut |instant| {
+                for (k, shown) in shown.iter_mut().enumerate() {
+                    let controllers = [0, 1].map(|controller| instant.agents(k, controller));
+                    *shown += &format!("{} {controllers:?}\n", instant.step);
+                }
+            })
+            .unwrap();
+        for (&episode, flown) in episodes.iter().zip(&digits(&flown)) {
+            assert_eq!(*flown, all[episode as usize]);
+        }
+        shown
+    };
+    let forward = trace(&[3, 69, 20], 43);
+    let backward = trace(&[20, 0, 69, 5, 3, 3], 43);
+    assert_eq!(forward, [4, 2, 0].map(|k| backward[k].clone()));
+    assert_eq!(backward[4], backward[5]);
+    assert!(
+        backward[..5]
+            .iter()
+            .enumerate()
+            .all(|(k, own)| !backward[..k].contains(own))
+    );
+    assert_eq!(trace(&[69], 43)[0], forward[1]);
+    assert_eq!(forward[0].lines().count(), 600 / 43 + 2);
+    // Finer samples show the same at the same steps.
+    let fine = trace(&[3], 1);
+    assert_eq!(fine[0].lines().count(), 601);
+    for line in forward[0].lines() {
+        assert!(fine[0].lines().any(|own| own == line));
+    }
+}

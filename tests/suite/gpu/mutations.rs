@@ -1,0 +1,271 @@
+//! Changed shaders and gains, each of which the comparison of the parity tests must notice: a comparison that cannot fail
+//! shows nothing.
+
+use super::agreement::{CONTRACT, Expected, Summary, TWIN};
+use super::{ALIKE, BRIEF, Gains, fly_all, mixed, mixed_thrust};
+use crate::common::gpu_or_skip;
+use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
+use urts_mc::campaign::Campaign;
+use urts_mc::gains::GainSet;
+
+/// What is wrong, the text that is right, and the wrong one.
+type Mutation = (&'static str, &'static str, &'static str);
+
+/// What is changed of the gains, and how.
+type Change = (&'static str, fn(&mut Gains));
+
+/// Noticed under full actuation.
+const FULL: [Mutation; 20] = [
+    (
+        "faults begin a step late",
+        "drawn(SWITCHES + 2u * k) <= step",
+        "drawn(SWITCHES + 2u * k) < step",
+    ),
+    (
+        "a workgroup reads draws of the one before",
+        "workgroup * (DRAWN_WORDS * WORKGROUP) + local",
+        "workgroup * ((DRAWN_WORDS - 1u) * WORKGROUP) + local",
+    ),
+    (
+        "agents and episodes change places",
+        "own.agent = local / LANES % TEAM;",
+        "own.agent = local % TEAM;",
+    ),
+    (
+        "agents push where they should pull",
+        "fma(others * own.kappa, position, force)",
+        "fma(others * -own.kappa, position, force)",
+    ),
+    (
+        "the last agent pulls at nobody",
+        "agent < TEAM; agent++",
+        "agent < TEAM - 1u; agent++",
+    ),
+    (
+        "the last stage looks half a step ahead",
+        "select(h.whole, h.half, stage < 2u)",
+        "select(h.whole, h.half, stage < 3u)",
+    ),
+    ("the sine is off by 1e-5", "-0.6459638f", "-0.6459738f"),
+    (
+        "tanh is off by 1e-4 of itself",
+        "0.0022684347f",
+        "0.0022686347f",
+    ),
+    (
+        "a step takes the noise of the next",
+        "stored_number(SAMPLES + 4u * k + step % 4u)",
+        "stored_number(SAMPLES + 4u * k + (step + 1u) % 4u)",
+    ),
+    (
+        "a square wave begins with the run",
+        "squares[k].held = switch_at(SQUARE_SWITCHES + k, step);",
+        "squares[k].held = drawn_number(SWITCHES + 2u * (SQUARE_SWITCHES + k) + 1u);",
+    ),
+    (
+        "a sine turns twice as fast",
+        "sines[k].phase + sines[k].advance",
+        "sines[k].phase + 2u * sines[k].advance",
+    ),
+    (
+        "a sine starts anew with every dispatch",
+        "drawn(word + 1u) + 2u * step * advance, advance);",
+        "drawn(word + 1u), advance);",
+    ),
+    (
+        "the observer does not know of its estimate of f2",
+        "unexplained = sensor_fault - stepped_at(stage, OBSERVER + 5u);",
+        "unexplained = sensor_fault;",
+    ),
+    (
+        "the observer starts without the sensor fault",
+        "vec3(integral, fma(fault, b.x, error), fma(fault, b.y, rate))",
+        "vec3(integral, error, rate)",
+    ),
+    (
+        "a state does not outlive a dispatch",
+        "store_number(CHANNEL + 9u, stepped_start[9]);",
+        "",
+    ),
+    (
+        "the gyroscopic torque turns the wrong way",
+        "fma(gyroscopic, -own.inertia.z, net * own.inverse_inertia)",
+        "fma(gyroscopic, own.inertia.z, net * own.inverse_inertia)",
+    ),
+    (
+        "drag pushes",
+        "fma(inputs.velocity, -setting.uav.drag, command + inputs.force)",
+        "fma(inputs.velocity, setting.uav.drag, command + inputs.force)",
+    ),
+    (
+        "metrics begin a step late",
+        "step >= setting.settle_step",
+        "step > setting.settle_step",
+    ),
+    (
+        "a settled error is smaller",
+        "lane_within(size, settled_error)",
+        "lane_within(size, settled_error - 0.001)",
+    ),
+    (
+        "what was before a fault ends a step early",
+        "step <= first_fault",
+        "step < first_fault",
+    ),
+];
+
+/// Noticed under thrust.
+const THRUST: [Mutation; 8] = [
+    (
+        "sums are counted twice",
+        "recent = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);",
+        "",
+    ),
+    (
+        "the command filter is half as damped",
+        "(w * (roll_command - roll) - (roll_rate + roll_rate)) * w",
+        "(w * (roll_command - roll) - roll_rate) * w",
+    ),
+    (
+        "torques may be a little larger",
+        "let limit = setting.uav.max_torque;",
+        "let limit = setting.uav.max_torque * 1.001;",
+    ),
+    (
+        "the observer is told of torques beyond the limit",
+        "fma(limited - non_inertial,",
+        "fma(wanted - non_inertial,",
+    ),
+    (
+        "gravity pulls along y",
+        "own.channel == 2u);",
+        "own.channel == 1u);",
+    ),
+    (
+        "thrust loses what another actuator lost",
+        "seen(stage, COMMAND_GAIN, 2u)",
+        "seen(stage, COMMAND_GAIN, 0u)",
+    ),
+    (
+        "thrust acts along the commanded axis",
+        "fma(applied, true_axis[own.channel], inputs.force)",
+        "fma(applied, commanded_axis[own.channel], inputs.force)",
+    ),
+    (
+        "the arc tangent is off by 1e-5",
+        "-0.33333093f",
+        "-0.33334093f",
+    ),
+];
+
+/// A campaign on which mutations must show, flown by the fault-tolerant controller.
+struct Ground {
+    campaign: Campaign,
+    gains: Gains,
+    expected: [Expected; 2],
+}
+
+impl Ground {
+    fn new(campaign: Campaign) -> Self {
+        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let expected = [&TWIN, &CONTRACT].map(|against| Expected::new(&campaign, &gains, against));
+        Self {
+            campaign,
+            gains,
+            expected,
+        }
+    }
+
+    /// Flies with changed gains or shaders, and compares as the parity tests do.
+    fn compare(
+        &self,
+        gpu: &Gpu,
+        gains: &Gains,
+        rewrite: &dyn Fn(String) -> String,
+    ) -> Result<[Summary; 2], String> {
+        let tuning = Tuning {
+            batch: None,
+            steps: Some(300),
+        };
+        let mut flyer = GpuFlyer::rewritten(gpu, &self.campaign, gains, tuning, rewrite).unwrap();
+        // A batch that is out of order is noticed before its numbers are.
+        let flown = fly_all(&mut flyer, &self.campaign).map_err(|error| error.to_string())?;
+        let [single, double] = &self.expected;
+        Ok([single.compare(&flown)?, double.compare(&flown)?])
+    }
+
+    /// Demands that every mutation is noticed, and that nothing is without one.
+    fn notices(&self, gpu: &Gpu, mutations: &[Mutation]) {
+        let [single, double] = self.compare(gpu, &self.gains, &|text| text).unwrap();
+        assert!(single.compared > 4, "{single}");
+        println!("{single}\n{double}");
+        let mut unnoticed = Vec::new();
+        for (what, right, wrong) in mutations {
+            let rewrite = |text: String| {
+                assert!(text.contains(right), "{what}: no {right:?} in the shaders");
+                text.replace(right, wrong)
+            };
+            match self.compare(gpu, &self.gains, &rewrite) {
+                Ok(_) => unnoticed.push(what),
+                Err(difference) => println!("{what}: {difference}"),
+            }
+        }
+        assert!(unnoticed.is_empty(), "{unnoticed:#?}");
+    }
+}
+
+/// One controller, and errors that seldom fail.
+const GENTLE: [(&str, &str); 3] = [
+    ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
+    ("max_error = 0.4", "max_error = 1.0"),
+    ("max_rmse = 0.3", "max_rmse = 1.0"),
+];
+
+fn full() -> Campaign {
+    // The attitude has 16 episodes per workgroup.
+    let own = [
+        ("episodes = 80", "episodes = 20"),
+        ("[0.0, 1.0, 60.0], weights = [4.0, 4.0, 1.0]", "[0.0, 1.0]"),
+    ];
+    mixed(&[&BRIEF[..], &ALIKE, &GENTLE, &own].concat())
+}
+
+#[test]
+fn mutations_under_full_actuation_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    Ground::new(full()).notices(&gpu, &FULL);
+}
+
+#[test]
+fn mutations_under_thrust_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    // A workgroup has 8 episodes.
+    let own = [
+        ("episodes = 80", "episodes = 12"),
+        (
+            "[0.0, 0.05, 20.0], weights = [4.0, 4.0, 1.0]",
+            "[0.0, 0.05]",
+        ),
+    ];
+    Ground::new(mixed_thrust(&[&BRIEF[..], &GENTLE, &own].concat())).notices(&gpu, &THRUST);
+}
+
+#[test]
+fn changed_gains_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let ground = Ground::new(full());
+    let right = ground.gains.clone();
+    let unchanged = |text| text;
+    let changes: [Change; 2] = [
+        ("feedback of position", |gains| gains[0][0].k[1] *= 1.0001),
+        ("injection of attitude", |gains| {
+            gains[0][1].l[2][2] *= 1.0001
+        }),
+    ];
+    for (what, change) in changes {
+        let mut wrong = right.clone();
+        change(&mut wrong);
+        let difference = ground.compare(&gpu, &wrong, &unchanged);
+        println!("{what}: {}", difference.err().unwrap());
+    }
+}
