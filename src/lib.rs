@@ -28,6 +28,7 @@ pub mod model;
 pub mod output;
 pub mod reference;
 pub mod replay;
+pub mod robot;
 pub mod run;
 pub mod statistics;
 pub mod synthesis;

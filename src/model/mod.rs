@@ -9,6 +9,7 @@ pub mod episode;
 pub(crate) mod group;
 pub(crate) mod integrator;
 pub mod lanes;
+pub mod leg;
 pub(crate) mod math;
 pub mod metric;
 pub mod plant_uav;

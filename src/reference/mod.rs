@@ -1,6 +1,7 @@
 //! Where the agents are to go: r(t), r'(t) and r''(t) of every agent and channel.
 
 pub mod path;
+pub mod walk;
 
 pub use path::WaypointPath;
 

@@ -7,6 +7,7 @@
 //! | `pure`, `loops`, `signals`, `groups` | the probes |
 //! | `controls` | one change of the shaders at a time, and the probe that must notice |
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
+//! | `leg` | the dynamics of a robot's leg, which no episode flies yet |
 //! | `world`, `image` | teams in random states, and how their state travels |
 //!
 //! They are in the library because they see its internals. Without an adapter the probes print SKIPPED, unless
@@ -27,6 +28,7 @@ mod groups;
 mod harness;
 mod image;
 mod layout;
+mod leg;
 mod loops;
 mod numbers;
 mod pure;

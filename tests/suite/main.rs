@@ -7,6 +7,9 @@
 //! | `lapack` | the linear algebra under the solver against nalgebra |
 //! | `statistics` | estimators against published values, and their coverage |
 //! | `path` | the waypoint reference |
+//! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
+//! | `leg` | the fast dynamics of a leg on every lane type |
+//! | `walk` | the walking reference against an independent implementation |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
 //! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
 //! | `flight` | flights whose GPU fails |
@@ -37,8 +40,11 @@ mod flight;
 mod gpu;
 mod lanes;
 mod lapack;
+mod leg;
 mod model;
 mod path;
+mod robot;
 mod scenarios;
 mod statistics;
 mod synthesis;
+mod walk;

@@ -1,0 +1,148 @@
+//! The numbers of a gait.
+
+use super::{Foot, WalkError};
+
+/// How a robot walks. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gait {
+    /// Period at which the centre of mass and the joints are planned, s.
+    pub sampling_s: f64,
+    /// Largest distance along the line between two footholds, m. The line is divided into equal
+    /// steps no longer than this; the first swing covers one of them, the others two, and the last
+    /// foot closes up.
+    pub step_length_m: f64,
+    /// How far a swinging ankle is raised, m.
+    pub step_height_m: f64,
+    /// From touch-down to touch-down, s.
+    pub step_period_s: f64,
+    /// The part of the period in which both feet stand and the weight shifts, s.
+    pub double_support_s: f64,
+    /// Distance of either foot from the line, L1 of the paper, m.
+    pub foot_offset_m: f64,
+    /// Height of the pelvis origin above the ground, m.
+    pub pelvis_height_m: f64,
+    /// Height of an ankle above its foothold, m.
+    pub ankle_height_m: f64,
+    /// How far ahead of the ankle the zero moment point is to lie under a foot, m.
+    pub zmp_ahead_m: f64,
+    /// Standing before the first step, s.
+    pub standing_before_s: f64,
+    /// Standing after the last step, s.
+    pub standing_after_s: f64,
+    /// The foot that steps first.
+    pub first_foot: Foot,
+    /// Step of the linear interpolation between waypoints, m: every leg is divided evenly, as near
+    /// to it as possible, before the cubic spline. Between long legs a right-angled corner becomes
+    /// a bend of radius 0.2 times this.
+    pub smoothing_step_m: f64,
+}
+
+/// A number's name, its value and the range it must lie in.
+type Entry = (&'static str, f64, [f64; 2]);
+
+impl Gait {
+    /// A slow walk of the Unitree G1.
+    pub const G1: Self = Self {
+        sampling_s: 0.01,
+        step_length_m: 0.2,
+        step_height_m: 0.05,
+        step_period_s: 0.9,
+        double_support_s: 0.15,
+        foot_offset_m: 0.1185,
+        pelvis_height_m: 0.74,
+        ankle_height_m: 0.035,
+        zmp_ahead_m: 0.03,
+        standing_before_s: 1.2,
+        standing_after_s: 1.6,
+        first_foot: Foot::Right,
+        smoothing_step_m: 2.0,
+    };
+
+    /// The part of the period in which one foot swings, s.
+    #[must_use]
+    pub fn single_support_s(&self) -> f64 {
+        self.step_period_s - self.double_support_s
+    }
+
+    /// Refuses numbers that cannot be or that contradict each other.
+    ///
+    /// # Errors
+    /// [`WalkError::Gait`] with the first of them.
+    pub fn check(&self) -> Result<(), WalkError> {
+        for (name, value, [low, high]) in self.ranges() {
+            if !(low <= value && value <= high) {
+                return Err(WalkError::Gait {
+                    name,
+                    value,
+                    limit: format!("must lie between {low} and {high}"),
+                    remedy: "correct it, in SI units",
+                });
+            }
+        }
+        for (name, value, least, other, remedy) in self.orders() {
+            if value < least {
+                return Err(WalkError::Gait {
+                    name,
+                    value,
+                    limit: format!("must be at least {least} ({other})"),
+                    remedy,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Wide enough for any biped, narrow enough that nothing overflows.
+    fn ranges(&self) -> [Entry; 12] {
+        const TIME_S: [f64; 2] = [1e-3, 100.0];
+        const LENGTH_M: [f64; 2] = [1e-3, 10.0];
+        [
+            ("sampling_s", self.sampling_s, [1e-4, 0.1]),
+            ("step_length_m", self.step_length_m, LENGTH_M),
+            ("step_height_m", self.step_height_m, LENGTH_M),
+            ("step_period_s", self.step_period_s, TIME_S),
+            ("double_support_s", self.double_support_s, TIME_S),
+            ("foot_offset_m", self.foot_offset_m, LENGTH_M),
+            ("pelvis_height_m", self.pelvis_height_m, LENGTH_M),
+            ("ankle_height_m", self.ankle_height_m, [0.0, 10.0]),
+            ("zmp_ahead_m", self.zmp_ahead_m, [-10.0, 10.0]),
+            ("standing_before_s", self.standing_before_s, TIME_S),
+            ("standing_after_s", self.standing_after_s, TIME_S),
+            ("smoothing_step_m", self.smoothing_step_m, [0.01, 1e3]),
+        ]
+    }
+
+    /// (name, value, least value, where that comes from, remedy).
+    fn orders(&self) -> [(&'static str, f64, f64, &'static str, &'static str); 4] {
+        [
+            (
+                "double_support_s",
+                self.double_support_s,
+                self.sampling_s,
+                "sampling_s",
+                "lengthen the double support or sample more often",
+            ),
+            (
+                "step_period_s",
+                self.step_period_s,
+                self.double_support_s + 2.0 * self.sampling_s,
+                "double_support_s and two samples of swing",
+                "lengthen the period or shorten the double support",
+            ),
+            (
+                "standing_after_s",
+                self.standing_after_s,
+                self.double_support_s,
+                "double_support_s, in which the weight returns to the middle",
+                "stand longer after the walk",
+            ),
+            (
+                "pelvis_height_m",
+                self.pelvis_height_m,
+                self.ankle_height_m + self.step_height_m,
+                "ankle_height_m + step_height_m",
+                "raise the pelvis or lower the step",
+            ),
+        ]
+    }
+}
