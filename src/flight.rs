@@ -10,6 +10,7 @@ use crate::tables::Tables;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc;
 use std::time::Instant;
 use thiserror::Error;
 
@@ -233,20 +234,34 @@ impl Flight {
             Err(error) => return Some(error),
         };
         self.times.loop_s += start.elapsed().as_secs_f64();
+        let (tables, times, pool) = (&mut self.tables, &mut self.times, &self.pool);
         let (mut next, mut failure) = (0, None);
-        while next < campaign.episodes && failure.is_none() {
-            let until = next.saturating_add(flyer.batch()).min(campaign.episodes);
-            let start = Instant::now();
-            let flown = self.pool.install(|| flyer.fly(next..until, done));
-            self.times.loop_s += start.elapsed().as_secs_f64();
-            match flown {
-                Ok(flown) => {
-                    self.take(campaign, &flown);
-                    next = until;
+        // The tables take in a batch while the next one flies; at most one waits, so memory stays small.
+        std::thread::scope(|scope| {
+            let (sender, batches) = mpsc::sync_channel::<Vec<Flown>>(1);
+            let filling = scope.spawn(move || {
+                let mut spent_s = 0.0;
+                for batch in batches {
+                    spent_s += fill(tables, campaign, &batch);
                 }
-                Err(error) => failure = Some(error),
+                spent_s
+            });
+            while next < campaign.episodes && failure.is_none() {
+                let until = next.saturating_add(flyer.batch()).min(campaign.episodes);
+                let start = Instant::now();
+                let flown = pool.install(|| flyer.fly(next..until, done));
+                times.loop_s += start.elapsed().as_secs_f64();
+                match flown.map(|flown| sender.send(flown)) {
+                    Ok(Ok(())) => next = until,
+                    // Nobody receives any more: filling has panicked, which is passed on below.
+                    Ok(Err(_)) => break,
+                    Err(error) => failure = Some(error),
+                }
             }
-        }
+            drop(sender);
+            let filled = filling.join();
+            times.statistics_s += filled.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        });
         if next > 0 {
             self.legs.push(Leg {
                 first: 0,
@@ -282,7 +297,7 @@ impl Flight {
             let start = Instant::now();
             let flown = self.pool.install(|| cpu.fly(next..until, done));
             self.times.loop_s += start.elapsed().as_secs_f64();
-            self.take(campaign, &flown);
+            self.times.statistics_s += fill(&mut self.tables, campaign, &flown);
             next = until;
         }
         self.legs.push(Leg {
@@ -294,13 +309,13 @@ impl Flight {
             },
         });
     }
+}
 
-    /// Adds flown episodes to the tables.
-    fn take(&mut self, campaign: &Campaign, flown: &[Flown]) {
-        let start = Instant::now();
-        for episode in flown {
-            self.tables.add(campaign, episode);
-        }
-        self.times.statistics_s += start.elapsed().as_secs_f64();
+/// Adds flown episodes to the tables; the time that it took, s.
+fn fill(tables: &mut Tables, campaign: &Campaign, flown: &[Flown]) -> f64 {
+    let start = Instant::now();
+    for episode in flown {
+        tables.add(campaign, episode);
     }
+    start.elapsed().as_secs_f64()
 }

@@ -56,7 +56,7 @@ pub struct Times {
     pub loop_s: f64,
     /// Cross-check.
     pub cross_check_s: f64,
-    /// Filling tables and statistics.
+    /// Filling tables, which a GPU's run does beside the loop, and statistics.
     pub statistics_s: f64,
     /// Writing files.
     pub writing_s: f64,
