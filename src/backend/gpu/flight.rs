@@ -218,13 +218,9 @@ impl<'g> GpuFlyer<'g> {
         self.times.kernel_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let outcomes = self.outcomes(&episodes)?;
+        let flown = self.flown(episodes)?;
         self.times.read_back_s += start.elapsed().as_secs_f64();
-        Ok(episodes
-            .into_iter()
-            .zip(outcomes)
-            .map(|(episode, outcomes)| Flown { episode, outcomes })
-            .collect())
+        Ok(flown)
     }
 
     /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended, `[episode]`.
@@ -284,12 +280,7 @@ impl<'g> GpuFlyer<'g> {
                 });
             }
         }
-        let outcomes = self.outcomes(&episodes)?;
-        Ok(episodes
-            .into_iter()
-            .zip(outcomes)
-            .map(|(episode, outcomes)| Flown { episode, outcomes })
-            .collect())
+        self.flown(episodes)
     }
 
     /// Replaces the buffers.
@@ -332,29 +323,34 @@ impl<'g> GpuFlyer<'g> {
         self.dispatch(episodes.len(), Entry::Start, 0..0, 0)
     }
 
-    /// Reads how a batch ended, `[episode][controller][agent]`.
-    fn outcomes(&mut self, episodes: &[Episode]) -> Result<Vec<Vec<Vec<AgentOutcome>>>, GpuError> {
+    /// Reads how the episodes of a batch ended.
+    fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<Flown>, GpuError> {
         let campaign = &self.model.campaign;
         let steps = campaign.time.steps;
-        let blank = vec![AgentOutcome::blank(); campaign.team];
-        let mut outcomes = vec![vec![blank; self.controllers.len()]; episodes.len()];
+        let blank = vec![vec![AgentOutcome::blank(); campaign.team]; self.controllers.len()];
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
+        let mut flown: Vec<Flown> = episodes
+            .into_iter()
+            .map(|episode| Flown {
+                episode,
+                outcomes: blank.clone(),
+            })
+            .collect();
         for (group, buffers) in self.groups.iter().zip(&self.buffers.own) {
-            let words = group.invocations(episodes.len()) * OUTCOME_WORDS;
+            let words = group.invocations(flown.len()) * OUTCOME_WORDS;
             let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
-            let agents = outcomes
-                .iter_mut()
-                .map(|controllers| &mut controllers[group.controller]);
             words::take_outcomes(
                 &self.model.campaign,
                 &group.shape,
                 self.model.parts[group.part].channels.start,
                 &words,
-                episodes.iter().map(|episode| episode.index).zip(agents),
+                flown
+                    .iter_mut()
+                    .map(|flown| (flown.episode.index, &mut flown.outcomes[group.controller])),
             )
             .map_err(|error| self.gpu.driver_error(error))?;
         }
-        Ok(outcomes)
+        Ok(flown)
     }
 
     /// Chooses the steps of the next dispatch by the time that the last one took.
