@@ -333,7 +333,7 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
     let campaign = Campaign::load(path)?;
     let gains = GainSet::obtain(&campaign)?;
     if arguments.json {
-        print_json(&gains.to_file(&campaign.synthesis.designs))?;
+        print_json(&gains.to_file(&campaign))?;
     } else {
         print(&show::gains(&campaign, &gains))?;
     }
@@ -350,7 +350,7 @@ fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
             error: error.into(),
             code: Code::Synthesis,
         })?;
-        done.push((format!("{role:?}").to_lowercase(), synthesis));
+        done.push((role.name(), synthesis));
     }
     if arguments.json {
         print_json(&done.into_iter().collect::<BTreeMap<_, _>>())?;

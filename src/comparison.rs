@@ -3,13 +3,14 @@
 //! The sample unit is the episode. Metrics are compared in the logarithm, channel by channel or averaged over the channels of
 //! one unit and over the team. A diverged episode has an infinite metric; where both controllers diverge the pair is a tie.
 
-use crate::campaign::{Campaign, Requirement, UAV_CHANNELS};
+use crate::campaign::{Campaign, ChannelGroup, Requirement};
 use crate::statistics::{
     Estimate, Interval, PairedFailures, clopper_pearson_upper, mcnemar_mid_p, median_bca,
     paired_difference, quantile, quantile_interval, wilson, win_rate,
 };
 use crate::tables::{Scores, Status, Table};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Level of every two-sided interval, and of the one-sided failure bound.
 pub const LEVEL: f64 = 0.95;
@@ -56,7 +57,7 @@ pub struct MetricQuantiles {
     pub failures: FailureRate,
     /// "rmse" or "max_abs".
     pub metric: &'static str,
-    /// "position" (m) or "attitude" (rad).
+    /// "position" (m), "attitude" or "joints" (rad).
     pub group: &'static str,
     /// Each of the quantiles, with its order-statistic interval where there are episodes enough.
     pub quantiles: Vec<(f64, Option<f64>, Option<Interval>)>,
@@ -85,7 +86,7 @@ pub struct Ratio {
     /// "group" or "channel".
     pub scope: &'static str,
     /// The channel or group.
-    pub name: &'static str,
+    pub name: Arc<str>,
     /// Median over the episodes of ln(rmse of b / rmse of a), averaged over the team and over the channels of a group.
     pub log_ratio: Option<Estimate>,
     /// Share of the episodes in which `a` is better; ties count half.
@@ -102,12 +103,9 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
     for (controller, name) in campaign.controllers.iter().enumerate() {
         for (stratum, episodes) in &strata {
             let failures = failure_rate(name, stratum, &scores.status[controller], episodes);
-            for (group, channels) in campaign.channel_groups() {
+            for ChannelGroup { role, channels } in campaign.channel_groups() {
                 for (metric, values) in [("rmse", &scores.rmse), ("max_abs", &scores.max_abs)] {
-                    let layout = Layout {
-                        team: campaign.team,
-                        channels: channels.clone(),
-                    };
+                    let layout = Layout::new(campaign, channels.clone());
                     let mut sorted: Vec<f64> = episodes
                         .iter()
                         .map(|&episode| {
@@ -132,7 +130,7 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                     rows.push(MetricQuantiles {
                         failures: failures.clone(),
                         metric,
-                        group,
+                        group: role.name(),
                         quantiles,
                     });
                 }
@@ -168,13 +166,11 @@ pub fn compare(campaign: &Campaign, scores: &Scores) -> Vec<PairedComparison> {
                     (false, false) => failures.neither += 1,
                 }
             }
-            let groups = campaign
-                .channel_groups()
-                .map(|(name, channels)| ("group", name, channels));
-            let channels = UAV_CHANNELS
-                .iter()
-                .enumerate()
-                .map(|(c, name)| ("channel", *name, c..c + 1));
+            let groups = campaign.channel_groups().into_iter();
+            let groups =
+                groups.map(|group| ("group", Arc::from(group.role.name()), group.channels));
+            let channels = campaign.channels().iter().enumerate();
+            let channels = channels.map(|(c, name)| ("channel", name.clone(), c..c + 1));
             PairedComparison {
                 a: campaign.controllers[a].clone(),
                 b: campaign.controllers[b].clone(),
@@ -182,7 +178,6 @@ pub fn compare(campaign: &Campaign, scores: &Scores) -> Vec<PairedComparison> {
                 difference: paired_difference(&failures, LEVEL),
                 failures,
                 ratios: groups
-                    .into_iter()
                     .chain(channels)
                     .map(|(scope, name, channels)| {
                         ratio(
@@ -190,10 +185,7 @@ pub fn compare(campaign: &Campaign, scores: &Scores) -> Vec<PairedComparison> {
                             [a, b],
                             scope,
                             name,
-                            &Layout {
-                                team: campaign.team,
-                                channels,
-                            },
+                            &Layout::new(campaign, channels),
                         )
                     })
                     .collect(),
@@ -277,7 +269,7 @@ pub fn comparison_table(comparisons: &[PairedComparison]) -> Table {
             row.name(|| "a".into(), comparison.a.as_str().into())
                 .name(|| "b".into(), comparison.b.as_str().into())
                 .word(|| "scope".into(), ratio.scope)
-                .word(|| "name".into(), ratio.name)
+                .name(|| "name".into(), ratio.name.clone())
                 .count(|| "both_failed".into(), failures.both)
                 .count(|| "only_a_failed".into(), failures.only_a)
                 .count(|| "only_b_failed".into(), failures.only_b)
@@ -322,12 +314,22 @@ fn estimate(
 /// Where the values of some channels of a team's episode lie in a list of [`Scores`].
 struct Layout {
     team: usize,
+    /// Channels of an agent.
+    width: usize,
     channels: Range<usize>,
 }
 
 impl Layout {
+    fn new(campaign: &Campaign, channels: Range<usize>) -> Self {
+        Self {
+            team: campaign.team,
+            width: campaign.channels().len(),
+            channels,
+        }
+    }
+
     fn of<'a>(&'a self, values: &'a [f64], episode: usize) -> impl Iterator<Item = f64> + 'a {
-        let width = UAV_CHANNELS.len();
+        let width = self.width;
         (0..self.team).flat_map(move |agent| {
             let first = (episode * self.team + agent) * width;
             self.channels
@@ -394,7 +396,7 @@ fn ratio(
     scores: &Scores,
     [a, b]: [usize; 2],
     scope: &'static str,
-    name: &'static str,
+    name: Arc<str>,
     layout: &Layout,
 ) -> Ratio {
     let (mut wins, mut losses, mut ties, mut diverged) = (0, 0, 0, [0; 3]);

@@ -1,9 +1,11 @@
 //! The gains that fly: synthesized, or from a file and verified the same way; and gains.json.
 
-use crate::campaign::{ActuationKind, Campaign, CampaignError, Drawn, FTC, PID, PID_TUNED};
+use crate::campaign::{
+    ActuationKind, Agent, Campaign, CampaignError, ChannelGroup, Drawn, FTC, PID, PID_TUNED,
+};
 use crate::synthesis::{
-    Certificate, ChannelDesign, ChannelSynthesis, Check, ControllerGains, LoopAnalysis, LoopGains,
-    SolverReport, SynthesisError, loop_gains, poles, synthesize, verify,
+    Certificate, ChannelDesign, ChannelRole, ChannelSynthesis, Check, ControllerGains,
+    LoopAnalysis, LoopGains, SolverReport, SynthesisError, loop_gains, poles, synthesize, verify,
 };
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -11,8 +13,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The channel types of a UAV, in the order of every pair here.
-pub const ROLES: [&str; 2] = ["position", "attitude"];
 /// The version of the gains.json format.
 const FORMAT: u32 = 1;
 
@@ -76,11 +76,11 @@ pub struct FlyingController {
     pub name: String,
     /// Whose gains they are: "synthesized", or a file and the name there.
     pub source: String,
-    /// Gains on the position and on the attitude channels.
-    pub channels: [ChannelController; 2],
+    /// Gains on each channel group of the campaign, in their order.
+    pub groups: Vec<ChannelController>,
 }
 
-/// A controller on one channel type.
+/// A controller on one channel group.
 #[derive(Debug, Clone)]
 pub struct ChannelController {
     /// The gains as designed.
@@ -91,7 +91,7 @@ pub struct ChannelController {
     pub findings: Option<Findings>,
 }
 
-/// What synthesis and verification found about the gains of one controller on one channel type.
+/// What synthesis and verification found about the gains of one controller on one channel group.
 #[derive(Debug, Clone, Serialize)]
 pub struct Findings {
     /// Poles and margins.
@@ -127,13 +127,29 @@ pub struct ControllerFile {
     /// Where the numbers are from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    /// Gains of the position channels.
-    pub position: ControllerGains,
-    /// Gains of the attitude channels.
-    pub attitude: ControllerGains,
-    /// What was found about them, by channel type; not read.
+    /// Gains of a UAV's position channels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<ControllerGains>,
+    /// Gains of a UAV's attitude channels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<ControllerGains>,
+    /// Gains of a biped's joints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<ControllerGains>,
+    /// What was found about them, by channel group; not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<serde_json::Value>,
+}
+
+impl ControllerFile {
+    /// The gains of the channels of a role.
+    fn of(&mut self, role: ChannelRole) -> &mut Option<ControllerGains> {
+        match role {
+            ChannelRole::Position => &mut self.position,
+            ChannelRole::Attitude => &mut self.attitude,
+            ChannelRole::Joints => &mut self.joints,
+        }
+    }
 }
 
 impl GainSet {
@@ -145,7 +161,7 @@ impl GainSet {
         let source = &campaign.synthesis;
         let built_in = |name: &String| [FTC, PID, PID_TUNED].contains(&name.as_str());
         let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(built_in) {
-            Some(synthesize_both(campaign)?)
+            Some(synthesize_groups(campaign)?)
         } else {
             None
         };
@@ -156,9 +172,7 @@ impl GainSet {
                 .map(|named| (&named.gains, &named.controller))
                 .or(source.gains.as_ref().map(|path| (path, name)));
             controllers.push(match (file, &synthesized) {
-                (Some((path, controller)), _) => {
-                    from_file(&source.designs, name, path, controller, true)?
-                }
+                (Some((path, controller)), _) => from_file(campaign, name, path, controller, true)?,
                 (None, Some(synthesized)) => from_synthesis(campaign, name, synthesized)?,
                 (None, None) => {
                     let reason = format!("no gains for the controller {name:?}");
@@ -179,7 +193,7 @@ impl GainSet {
     /// # Errors
     /// If the file is unreadable or lacks a controller.
     pub fn read(campaign: &Campaign, path: &Path) -> Result<Self, GainsError> {
-        let read = |name: &String| from_file(&campaign.synthesis.designs, name, path, name, false);
+        let read = |name: &String| from_file(campaign, name, path, name, false);
         Ok(Self {
             controllers: campaign
                 .controllers
@@ -189,38 +203,44 @@ impl GainSet {
         })
     }
 
-    /// The gains as the episode loop takes them.
+    /// The gains as the episode loop takes them, `[controller][channel group]`.
     #[must_use]
-    pub fn loops(&self) -> Vec<[LoopGains; 2]> {
-        self.controllers
-            .iter()
-            .map(|controller| [0, 1].map(|role| controller.channels[role].loop_gains))
-            .collect()
+    pub fn loops(&self) -> Vec<Vec<LoopGains>> {
+        let of_groups = |controller: &FlyingController| {
+            let groups = controller.groups.iter();
+            groups.map(|group| group.loop_gains).collect()
+        };
+        self.controllers.iter().map(of_groups).collect()
     }
 
     /// The gains as a file.
     #[must_use]
-    pub fn to_file(&self, designs: &[ChannelDesign; 2]) -> GainsFile {
-        let by_role = |values: [serde_json::Value; 2]| {
-            serde_json::Value::Object(ROLES.into_iter().map(String::from).zip(values).collect())
+    pub fn to_file(&self, campaign: &Campaign) -> GainsFile {
+        let groups = campaign.channel_groups();
+        let by_group = |values: Vec<serde_json::Value>| {
+            let names = groups.iter().map(|group| group.role.name().to_string());
+            serde_json::Value::Object(names.zip(values).collect())
         };
         let controllers = self.controllers.iter().map(|controller| {
-            let [position, attitude] = &controller.channels;
-            let file = ControllerFile {
+            let findings = controller.groups.iter().map(|group| json(&group.findings));
+            let mut file = ControllerFile {
                 source: Some(controller.source.clone()),
-                position: position.gains.clone(),
-                attitude: attitude.gains.clone(),
-                findings: Some(by_role([
-                    json(&position.findings),
-                    json(&attitude.findings),
-                ])),
+                position: None,
+                attitude: None,
+                joints: None,
+                findings: Some(by_group(findings.collect())),
             };
+            for (group, own) in groups.iter().zip(&controller.groups) {
+                *file.of(group.role) = Some(own.gains.clone());
+            }
             (controller.name.clone(), file)
         });
         GainsFile {
             format: FORMAT,
             source: None,
-            designs: Some(by_role([json(&designs[0]), json(&designs[1])])),
+            designs: Some(by_group(
+                campaign.synthesis.designs.iter().map(json).collect(),
+            )),
             controllers: controllers.collect(),
         }
     }
@@ -230,7 +250,7 @@ impl GainSet {
         let step_s = campaign.time.step_s;
         let of_controllers = self.controllers.iter().flat_map(|controller| {
             let poles = controller
-                .channels
+                .groups
                 .iter()
                 .flat_map(|channel| poles(&channel.loop_gains));
             poles.map(move |pole| (pole, format!("{:?}", controller.name)))
@@ -258,9 +278,11 @@ impl GainSet {
     }
 }
 
-/// The poles of what is not a controller: damping of the lightest plant, and the command filter.
-fn plant_poles(campaign: &Campaign) -> [(f64, &'static str); 3] {
-    let uav = &campaign.uav;
+/// The poles of what is not a controller: a UAV's damping at its lightest, and its command filter.
+fn plant_poles(campaign: &Campaign) -> Vec<(f64, &'static str)> {
+    let Agent::Uav(uav) = &campaign.agent else {
+        return Vec::new();
+    };
     let least = |scale: &Drawn| {
         let lows = scale
             .distributions
@@ -270,10 +292,10 @@ fn plant_poles(campaign: &Campaign) -> [(f64, &'static str); 3] {
     };
     let smallest_inertia = uav.inertia_kg_m2.into_iter().fold(f64::INFINITY, f64::min);
     let filter = match uav.actuation {
-        ActuationKind::Full => 0.0,
         ActuationKind::Thrust => -uav.command_filter_rad_s,
+        _ => 0.0,
     };
-    [
+    vec![
         (
             -uav.drag_n_s_m / (uav.mass_kg * least(&campaign.mass_scale)),
             "the drag",
@@ -314,22 +336,25 @@ fn longest_stable_step(pole: Complex<f64>) -> f64 {
     stable
 }
 
-fn synthesize_both(campaign: &Campaign) -> Result<[ChannelSynthesis; 2], GainsError> {
-    let one = |role: usize| {
-        synthesize(&campaign.synthesis.designs[role]).map_err(|source| GainsError::Synthesis {
-            path: campaign.path.clone(),
-            role: ROLES[role],
-            source: Box::new(source),
-        })
-    };
-    let position = one(0)?;
-    let [first, second] = &campaign.synthesis.designs;
-    let attitude = if first == second {
-        position.clone()
-    } else {
-        one(1)?
-    };
-    Ok([position, attitude])
+/// The gains of each channel group; equal designs are synthesized once.
+fn synthesize_groups(campaign: &Campaign) -> Result<Vec<ChannelSynthesis>, GainsError> {
+    let mut done: Vec<ChannelSynthesis> = Vec::new();
+    for (group, design) in campaign
+        .channel_groups()
+        .iter()
+        .zip(&campaign.synthesis.designs)
+    {
+        let known = done.iter().find(|known| known.design == *design).cloned();
+        done.push(match known {
+            Some(known) => known,
+            None => synthesize(design).map_err(|source| GainsError::Synthesis {
+                path: campaign.path.clone(),
+                role: group.role.name(),
+                source: Box::new(source),
+            })?,
+        });
+    }
+    Ok(done)
 }
 
 /// The gains of a built-in controller in a synthesis, and what was found about them.
@@ -363,32 +388,32 @@ pub fn built_in<'a>(
 fn from_synthesis(
     campaign: &Campaign,
     name: &str,
-    synthesized: &[ChannelSynthesis; 2],
+    synthesized: &[ChannelSynthesis],
 ) -> Result<FlyingController, GainsError> {
-    let channel = |role: usize| {
-        let (gains, findings) = built_in(&synthesized[role], name);
-        let loop_gains = integrable(&synthesized[role].design, gains).map_err(|source| {
-            GainsError::Synthesis {
+    let of_group = |(group, synthesis): (ChannelGroup, &ChannelSynthesis)| {
+        let (gains, findings) = built_in(synthesis, name);
+        let loop_gains =
+            integrable(&synthesis.design, gains).map_err(|source| GainsError::Synthesis {
                 path: campaign.path.clone(),
-                role: ROLES[role],
+                role: group.role.name(),
                 source: Box::new(source),
-            }
-        })?;
+            })?;
         Ok::<_, GainsError>(ChannelController {
             gains: gains.clone(),
             loop_gains,
             findings: Some(findings),
         })
     };
+    let groups = campaign.channel_groups().into_iter().zip(synthesized);
     Ok(FlyingController {
         name: name.to_string(),
         source: "synthesized".into(),
-        channels: [channel(0)?, channel(1)?],
+        groups: groups.map(of_group).collect::<Result<_, _>>()?,
     })
 }
 
 fn from_file(
-    designs: &[ChannelDesign; 2],
+    campaign: &Campaign,
     name: &str,
     path: &Path,
     controller: &str,
@@ -400,7 +425,7 @@ fn from_file(
     };
     let text = std::fs::read_to_string(path)
         .map_err(|error| broken(format!("cannot be read ({error}); name a gains.json")))?;
-    let file: GainsFile = serde_json::from_str(&text)
+    let mut file: GainsFile = serde_json::from_str(&text)
         .map_err(|error| broken(format!("{error}; write it as the gains.json of a run")))?;
     if file.format != FORMAT {
         return Err(broken(format!(
@@ -408,23 +433,30 @@ fn from_file(
             file.format
         )));
     }
-    let found = file.controllers.get(controller).ok_or_else(|| {
+    let Some(mut found) = file.controllers.remove(controller) else {
         let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
-        broken(format!(
+        return Err(broken(format!(
             "controllers.{controller}: absent, the file has {}; add it or name one of these",
             known.join(", ")
-        ))
-    })?;
-    let channel = |role: usize, gains: &ControllerGains| {
+        )));
+    };
+    let mut of_group = |(group, design): (ChannelGroup, &ChannelDesign)| {
+        let role = group.role.name();
+        let gains = found.of(group.role).take().ok_or_else(|| {
+            broken(format!(
+                "controllers.{controller}.{role}: absent; add it, or name gains that were made for {}",
+                campaign.agent.plural()
+            ))
+        })?;
         let refused = |source| GainsError::Refused {
             path: path.to_path_buf(),
             controller: controller.to_string(),
-            role: ROLES[role],
+            role,
             source: Box::new(source),
         };
-        let loop_gains = integrable(&designs[role], gains).map_err(refused)?;
+        let loop_gains = integrable(design, &gains).map_err(refused)?;
         let verified = if check {
-            Some(verify(&designs[role], gains).map_err(refused)?)
+            Some(verify(design, &gains).map_err(refused)?)
         } else {
             None
         };
@@ -435,13 +467,21 @@ fn from_file(
             solver: Vec::new(),
         });
         Ok::<_, GainsError>(ChannelController {
-            gains: gains.clone(),
+            gains,
             loop_gains,
             findings,
         })
     };
-    let channels = [channel(0, &found.position)?, channel(1, &found.attitude)?];
-    if channels[0].loop_gains.states != channels[1].loop_gains.states {
+    let groups = campaign.channel_groups().into_iter();
+    let groups: Vec<ChannelController> = groups
+        .zip(&campaign.synthesis.designs)
+        .map(&mut of_group)
+        .collect::<Result<_, _>>()?;
+    let states = |group: &ChannelController| group.loop_gains.states;
+    if groups
+        .windows(2)
+        .any(|pair| states(&pair[0]) != states(&pair[1]))
+    {
         let remedy = "give both fault estimates, or neither";
         return Err(broken(format!(
             "controllers.{controller}: position and attitude differ in kind; {remedy}"
@@ -451,7 +491,7 @@ fn from_file(
     Ok(FlyingController {
         name: name.to_string(),
         source,
-        channels,
+        groups,
     })
 }
 

@@ -24,6 +24,8 @@ pub struct Manifest {
     pub campaign_blake3: String,
     /// The campaign text.
     pub campaign: String,
+    /// The text of the robot's file, where there are robots.
+    pub robot: Option<String>,
     /// Seed that was used: the campaign's, unless it was overridden.
     pub seed: u64,
     /// Episodes that were flown.

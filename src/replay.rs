@@ -2,7 +2,7 @@
 
 use crate::backend::cpu::{Cpu, Precision, Simd};
 use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
-use crate::campaign::{Campaign, CampaignError, UAV_CHANNELS};
+use crate::campaign::{Campaign, CampaignError};
 use crate::flight::Engine;
 use crate::gains::{GainSet, GainsError};
 use crate::manifest::Manifest;
@@ -67,7 +67,11 @@ pub fn replay(
     interval_s: Option<f64>,
 ) -> Result<Replay, ReplayError> {
     let manifest = Manifest::read(dir)?;
-    let mut campaign = Campaign::parse(&manifest.campaign, Path::new(&manifest.campaign_path))?;
+    let mut campaign = Campaign::parse_with_robot(
+        &manifest.campaign,
+        Path::new(&manifest.campaign_path),
+        manifest.robot.as_deref(),
+    )?;
     campaign.seed = manifest.seed;
     campaign.episodes = manifest.episodes;
     if episode >= campaign.episodes {
@@ -235,7 +239,7 @@ impl Replay {
         let mut table = Table::default();
         for snapshot in &self.snapshots {
             for (agent, channels) in (0u64..).zip(&snapshot.agents) {
-                for (channel, shown) in UAV_CHANNELS.iter().zip(channels) {
+                for (channel, shown) in self.campaign.channels().iter().zip(channels) {
                     let Shown {
                         r,
                         x,
@@ -254,7 +258,7 @@ impl Replay {
                         f64::from(snapshot.step) * self.campaign.time.step_s,
                     )
                     .count(|| "agent".into(), agent)
-                    .word(|| "channel".into(), channel);
+                    .name(|| "channel".into(), channel.clone());
                     for (name, value) in [
                         ("r", r),
                         ("x", x),

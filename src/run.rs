@@ -1,7 +1,7 @@
 //! A whole run: gains, episodes, tables, statistics, files.
 
 use crate::backend::gpu::{Gpu, GpuError};
-use crate::campaign::{Campaign, Requirement};
+use crate::campaign::{Agent, Campaign, Requirement};
 use crate::comparison::{self, FailureRate, MetricQuantiles, PairedComparison};
 use crate::cross_check::{CrossCheck, cross_check};
 use crate::flight::{Engine, Flight, FlightError, Settings, fly, open};
@@ -159,10 +159,7 @@ pub fn run_on<'a>(
             out.write_csv(&format!("{name}.csv"), table)?;
         }
     }
-    out.write(
-        "gains.json",
-        &pretty(&gains.to_file(&campaign.synthesis.designs))?,
-    )?;
+    out.write("gains.json", &pretty(&gains.to_file(campaign))?)?;
     times.writing_s = start.elapsed().as_secs_f64();
     let manifest = Manifest {
         name: campaign.name.clone(),
@@ -171,6 +168,10 @@ pub fn run_on<'a>(
         campaign_path: campaign.path.display().to_string(),
         campaign_blake3: campaign_hash(campaign),
         campaign: campaign.text.clone(),
+        robot: match &campaign.agent {
+            Agent::Uav(_) => None,
+            Agent::Biped(biped) => Some(biped.file.text.clone()),
+        },
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,

@@ -12,12 +12,13 @@ pub(crate) use plan::{plan, plan_json};
 
 use std::fmt::Write;
 use std::path::Path;
-use urts_mc::campaign::UAV_CHANNELS;
 use urts_mc::replay::Replay;
 
 /// How a replayed episode went.
 pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Path) -> String {
     let mut text = String::new();
+    let channels = replay.campaign.channels();
+    let width = channels.iter().map(|name| name.len()).max().unwrap_or(0);
     line(
         &mut text,
         &format!(
@@ -37,11 +38,11 @@ pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Pat
             (false, None) => String::new(),
         };
         line(&mut text, &format!("  agent {agent}{ending}"));
-        for (name, metrics) in UAV_CHANNELS.iter().zip(&outcome.channels) {
+        for (name, metrics) in channels.iter().zip(&outcome.channels) {
             line(
                 &mut text,
                 &format!(
-                    "    {name:<6} {:>10.5}  {:>10.5}",
+                    "    {name:<width$} {:>10.5}  {:>10.5}",
                     metrics.rmse, metrics.max_abs
                 ),
             );

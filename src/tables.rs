@@ -1,7 +1,7 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use crate::backend::Flown;
-use crate::campaign::{Campaign, Time, UAV_CHANNELS};
+use crate::campaign::{Campaign, ChannelGroup, Time};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
@@ -233,10 +233,12 @@ impl Tables {
                 let mut row = self.episodes.row();
                 key(&mut row);
                 judged.write_agent(&mut row, campaign, worst, draw);
-                for (channel, outcome) in judged.outcome.channels.iter().enumerate() {
+                let channels = campaign.channels().iter();
+                for (channel, outcome) in channels.zip(&judged.outcome.channels) {
                     let mut row = self.channels.row();
                     key(&mut row);
-                    judged.write_channel(&mut row, campaign.time, channel, outcome);
+                    row.name(|| "channel".into(), channel.clone());
+                    judged.write_channel(&mut row, campaign.time, outcome);
                     self.scores.rmse[controller].push(outcome.rmse);
                     self.scores.max_abs[controller].push(outcome.max_abs);
                 }
@@ -290,8 +292,9 @@ impl<'a> Judged<'a> {
         row.word(|| "status".into(), self.status.word())
             .word(|| "episode_status".into(), worst.word())
             .real_if("failed_at_s", failed_at_s);
-        for (group, channels) in campaign.channel_groups() {
-            let channels = &self.outcome.channels[channels.clone()];
+        for ChannelGroup { role, channels } in campaign.channel_groups() {
+            let group = role.name();
+            let channels = &self.outcome.channels[channels];
             let mean_square = channels
                 .iter()
                 .map(|metrics| metrics.rmse.powi(2))
@@ -323,15 +326,8 @@ impl<'a> Judged<'a> {
         write_draw(row, campaign, draw);
     }
 
-    fn write_channel(
-        &self,
-        row: &mut Row<'_>,
-        time: Time,
-        channel: usize,
-        metrics: &ChannelOutcome,
-    ) {
-        row.word(|| "channel".into(), UAV_CHANNELS[channel])
-            .real(|| "rmse".into(), self.finite(metrics.rmse))
+    fn write_channel(&self, row: &mut Row<'_>, time: Time, metrics: &ChannelOutcome) {
+        row.real(|| "rmse".into(), self.finite(metrics.rmse))
             .real(|| "max_abs".into(), self.finite(metrics.max_abs))
             .real(|| "ise".into(), self.finite(metrics.ise))
             .real(|| "iae".into(), self.finite(metrics.iae))
@@ -390,7 +386,9 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
         ("error_integral", &draw.error_integral),
     ];
     for (name, values) in initial {
-        write_channels(row, values, |channel| format!("initial_{name}_{channel}"));
+        write_channels(row, campaign, values, |channel| {
+            format!("initial_{name}_{channel}")
+        });
     }
     for (index, (disturbance, values)) in campaign
         .disturbances
@@ -399,7 +397,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
         .enumerate()
     {
         for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
-            write_channels(row, values, |channel| {
+            write_channels(row, campaign, values, |channel| {
                 format!("disturbance{index}_{}_{channel}", parameter.name)
             });
         }
@@ -420,15 +418,20 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
                 .zip(&drawn.strikes)
                 .map(|(value, strikes)| if *strikes { *value } else { f64::NAN })
                 .collect();
-            write_channels(row, &applied, |channel| {
+            write_channels(row, campaign, &applied, |channel| {
                 format!("fault{index}_{}_{channel}", parameter.name)
             });
         }
     }
 }
 
-fn write_channels(row: &mut Row<'_>, values: &[f64], name: impl Fn(&str) -> String) {
-    for (value, channel) in values.iter().zip(UAV_CHANNELS) {
+fn write_channels(
+    row: &mut Row<'_>,
+    campaign: &Campaign,
+    values: &[f64],
+    name: impl Fn(&str) -> String,
+) {
+    for (value, channel) in values.iter().zip(campaign.channels()) {
         row.real(|| name(channel), *value);
     }
 }

@@ -80,12 +80,12 @@ struct Flyer<R> {
 
 impl Cpu {
     /// Prepares a campaign: tabulates the references and rounds the gains; `gains` are those of each of the campaign's
-    /// controllers on the position and the attitude channels. A layout that the processor lacks is replaced by the widest
+    /// controllers on each channel group. A layout that the processor lacks is replaced by the widest
     /// it has; [`Cpu::simd`] says which is used.
     #[must_use]
     pub fn new(
         campaign: &Campaign,
-        gains: &[[LoopGains; 2]],
+        gains: &[Vec<LoopGains>],
         precision: Precision,
         simd: Option<Simd>,
     ) -> Self {
@@ -152,8 +152,8 @@ impl Cpu {
 }
 
 impl<R: Real> Flyer<R> {
-    fn new(campaign: &Campaign, gains: &[[LoopGains; 2]]) -> Self {
-        let controllers = gains.iter().map(Controller::new).collect();
+    fn new(campaign: &Campaign, gains: &[Vec<LoopGains>]) -> Self {
+        let controllers = gains.iter().map(|groups| Controller::new(groups)).collect();
         Self {
             campaign: campaign.clone(),
             model: Model::new(campaign),

@@ -1,14 +1,12 @@
 //! Checks of single values and of the shapes that all tables share.
 
+use super::Drawn;
 use super::distribution::Distribution;
 use super::error::{CampaignError, line_of};
 use super::file::*;
-use super::{Drawn, UAV_CHANNELS};
 use std::fmt::Display;
 use std::path::Path;
-
-/// Channels of one UAV.
-pub(super) const CHANNELS: usize = UAV_CHANNELS.len();
+use std::sync::Arc;
 
 /// The values that a quantity may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,14 +73,16 @@ macro_rules! parameters {
 }
 parameters!(InitialFile: error, error_rate, error_integral);
 parameters!(InitialBlock: error, error_rate, error_integral);
-parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad);
+parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale);
 parameters!(FaultFile: magnitude, amplitude, period_s, smoothing, phase_rad, std);
-parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std);
+parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std, scale);
 
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
     pub(super) path: &'a Path,
     pub(super) text: &'a str,
+    /// Names of an agent's channels, once they are known.
+    pub(super) channels: Vec<Arc<str>>,
 }
 
 impl Check<'_> {
@@ -171,7 +171,7 @@ impl Check<'_> {
         let name = parameter.name;
         let mut drawn = Drawn {
             per: Per::Channel,
-            channels: CHANNELS,
+            channels: self.channels.len(),
             distributions: Vec::new(),
         };
         let mut per = None;
@@ -183,7 +183,7 @@ impl Check<'_> {
                 format!("{table}.{name}")
             };
             let value = own.or_else(|| base.and_then(|base| base.parameter(name)));
-            for channel in 0..CHANNELS {
+            for channel in 0..self.channels.len() {
                 let (distribution, own_per) =
                     self.channel_value(&key, value, parameter, channel)?;
                 // Whoever shares a constant, it is the same.
@@ -249,7 +249,9 @@ impl Check<'_> {
                 return Err(self.invalid(key, "absent", "this kind needs it", "add it"));
             }
             (Some(Value::List(list)), _) => match list.get(channel) {
-                Some(own) if list.len() == CHANNELS => (format!("{key}[{channel}]"), own),
+                Some(own) if list.len() == self.channels.len() => {
+                    (format!("{key}[{channel}]"), own)
+                }
                 _ => return Err(self.wrong_length(key, list.len())),
             },
             (Some(one), _) => (key.to_string(), one),
@@ -331,14 +333,15 @@ impl Check<'_> {
         numbers: Option<&Numbers>,
         default: f64,
         bounds: Bounds,
-    ) -> Result<[f64; CHANNELS], CampaignError> {
+    ) -> Result<Vec<f64>, CampaignError> {
+        let channels = self.channels.len();
         let values = match numbers {
-            None => [default; CHANNELS],
-            Some(Numbers::One(value)) => [*value; CHANNELS],
-            Some(Numbers::List(list)) => <[f64; CHANNELS]>::try_from(list.as_slice())
-                .map_err(|_| self.wrong_length(key, list.len()))?,
+            None => vec![default; channels],
+            Some(Numbers::One(value)) => vec![*value; channels],
+            Some(Numbers::List(list)) if list.len() == channels => list.clone(),
+            Some(Numbers::List(list)) => return Err(self.wrong_length(key, list.len())),
         };
-        for (channel, value) in values.into_iter().enumerate() {
+        for (channel, &value) in values.iter().enumerate() {
             let own = match numbers {
                 Some(Numbers::List(_)) => format!("{key}[{channel}]"),
                 _ => key.to_string(),
@@ -352,7 +355,10 @@ impl Check<'_> {
         self.invalid(
             key,
             format!("a list of {length}"),
-            &format!("a list has one value for each of the {CHANNELS} channels"),
+            &format!(
+                "a list has one value for each of the {} channels",
+                self.channels.len()
+            ),
             "complete it, or give one value for all",
         )
     }

@@ -23,6 +23,9 @@ pub enum CampaignError {
         /// Line, column, what is wrong, and the nearest known key.
         message: String,
     },
+    /// The robot's file holds no robot.
+    #[error(transparent)]
+    Robot(#[from] crate::robot::RobotError),
     /// A value out of its limits, or a contradiction.
     #[error("{}: {key} = {value}: {limit}; {remedy}", path.display())]
     Invalid {

@@ -79,7 +79,9 @@ pub struct AgentFile {
     pub team: Option<u32>,
     /// What the command acts through (default "full").
     pub actuation: Option<ActuationKind>,
-    /// True mass over modelled mass (default 1).
+    /// Biped: a joint table (.toml) or a URDF; a relative path starts at the campaign file's folder (default: the Unitree G1).
+    pub robot: Option<String>,
+    /// True mass over modelled mass (default 1); a biped's M and H as a whole.
     pub mass_scale: Option<Value>,
     /// True inertia over modelled inertia (default 1).
     pub inertia_scale: Option<Value>,
@@ -109,16 +111,20 @@ pub struct AgentFile {
 pub enum AgentKind {
     /// The quadrotor of (3).
     Uav,
+    /// The biped of (4).
+    Biped,
 }
 
-/// What a UAV's command acts through.
+/// What the command acts through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ActuationKind {
-    /// Six independent forces and torques.
+    /// A force or torque on every channel, without limits.
     Full,
-    /// Thrust along the body axis and three torques, within limits.
+    /// UAV: thrust along the body axis and three torques, within limits.
     Thrust,
+    /// Biped: torques within the robot's limits.
+    Limited,
 }
 
 /// `[reference]`
@@ -135,11 +141,16 @@ pub struct ReferenceFile {
     pub frequency_rad_s: Option<Numbers>,
     /// Sinusoid: phase at t = 0, rad.
     pub phase_rad: Option<Numbers>,
-    /// Sinusoid: blocks that override the keys above, one per agent.
+    /// Waypoints: the points (x, y, z), m; walk: (x, y), m.
+    pub points_m: Option<Vec<Vec<f64>>>,
+    /// Walk: when the robot begins to stand on the first point, s; may be negative (default 0).
+    pub start_s: Option<f64>,
+    /// Sinusoid and walk: blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<SinusoidFile>>,
-    /// Waypoints: the points, m.
-    pub points_m: Option<Vec<[f64; 3]>>,
+    pub agents: Option<Vec<ReferenceBlock>>,
+    /// Walk: how the robot walks (default: a slow walk of the Unitree G1).
+    #[serde(default, deserialize_with = "some_table")]
+    pub gait: Option<GaitFile>,
     /// Waypoints: offset of each agent from the points, m.
     pub offset_m: Option<Vec<[f64; 3]>>,
     /// Waypoints: bound on the speed, m/s.
@@ -156,14 +167,16 @@ pub struct ReferenceFile {
 pub enum ReferenceKind {
     /// center + amplitude sin(frequency t + phase) on every channel.
     Sinusoid,
-    /// A smooth rest-to-rest path through points.
+    /// UAV: a smooth rest-to-rest path through points.
     Waypoints,
+    /// Biped: the joints of a robot that walks through points.
+    Walk,
 }
 
-/// One agent's sinusoid; what is absent is taken from `[reference]`.
+/// One agent's reference; what is absent is taken from `[reference]`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SinusoidFile {
+pub struct ReferenceBlock {
     /// Mean, m or rad.
     pub center: Option<Numbers>,
     /// Amplitude, m or rad.
@@ -172,13 +185,61 @@ pub struct SinusoidFile {
     pub frequency_rad_s: Option<Numbers>,
     /// Phase at t = 0, rad.
     pub phase_rad: Option<Numbers>,
+    /// Walk: the points (x, y), m.
+    pub points_m: Option<Vec<Vec<f64>>>,
+    /// Walk: when the robot begins to stand on the first point, s.
+    pub start_s: Option<f64>,
+}
+
+/// `[reference.gait]`; the defaults are a slow walk of the Unitree G1.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GaitFile {
+    /// Sampling period of the plan, s (default 0.01).
+    pub sampling_s: Option<f64>,
+    /// Largest step length, m (default 0.2).
+    pub step_length_m: Option<f64>,
+    /// How far a swinging ankle is raised, m (default 0.05).
+    pub step_height_m: Option<f64>,
+    /// From touch-down to touch-down, s (default 0.9).
+    pub step_period_s: Option<f64>,
+    /// Part of the period in which both feet stand, s (default 0.15).
+    pub double_support_s: Option<f64>,
+    /// Distance of either foot from the line, m (default 0.1185).
+    pub foot_offset_m: Option<f64>,
+    /// Height of the pelvis above the ground, m (default 0.74).
+    pub pelvis_height_m: Option<f64>,
+    /// Height of an ankle above its foothold, m (default 0.035).
+    pub ankle_height_m: Option<f64>,
+    /// How far ahead of the ankle the zero moment point is to lie under a foot, m (default 0.03).
+    pub zmp_ahead_m: Option<f64>,
+    /// Standing before the first step, s (default 1.2).
+    pub standing_before_s: Option<f64>,
+    /// Standing after the last step, s (default 1.6).
+    pub standing_after_s: Option<f64>,
+    /// The foot that steps first (default "right").
+    pub first_foot: Option<FootFile>,
+    /// Spacing of the points interpolated between waypoints; longer steps make wider bends, m (default 2).
+    pub smoothing_step_m: Option<f64>,
+    /// Centre of mass in the pelvis frame, m (default: that of the standing pose).
+    pub com_offset_m: Option<[f64; 3]>,
+}
+
+/// A foot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FootFile {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
 }
 
 /// `[synthesis]`
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SynthesisFile {
-    /// The weights: "uav-paper" or "uav-physical".
+    /// The weights: "uav-paper" or "uav-physical" of a UAV, "biped-paper" of a biped.
     pub preset: Option<String>,
     /// A gains.json that replaces the synthesized gains of "ftc", "pid" and "pid-tuned".
     pub gains: Option<String>,
@@ -191,6 +252,9 @@ pub struct SynthesisFile {
     /// Overrides of the preset on the attitude channels.
     #[serde(default, deserialize_with = "some_table")]
     pub attitude: Option<WeightsFile>,
+    /// Overrides of the preset on a biped's joints.
+    #[serde(default, deserialize_with = "some_table")]
+    pub joints: Option<WeightsFile>,
 }
 
 /// An additional controller whose gains come from a file.
@@ -278,7 +342,7 @@ pub enum ObserverStart {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CouplingFile {
-    /// Strength of the coupling (10), 1/m or 1/rad times N or N m.
+    /// Strength of the coupling (10) or (11): N/m^2 and N m/rad^2 on the channels of a UAV, N m/rad^2 on a biped's.
     pub kappa: Value,
 }
 
@@ -294,6 +358,8 @@ pub struct DisturbanceFile {
     pub frequency_rad_s: Option<Value>,
     /// Sine: phase at t = 0, rad (default 0).
     pub phase_rad: Option<Value>,
+    /// Ground reaction: share of the series that acts (default 1).
+    pub scale: Option<Value>,
     /// Blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<SignalBlock>>,
@@ -307,6 +373,8 @@ pub enum DisturbanceKind {
     Sine,
     /// A constant.
     Constant,
+    /// Biped: the torques J'f with which the ground answers the walk.
+    GroundReaction,
 }
 
 /// `[[fault]]`
@@ -358,6 +426,8 @@ pub struct SignalBlock {
     pub smoothing: Option<Value>,
     /// Standard deviation.
     pub std: Option<Value>,
+    /// Share of the ground reaction.
+    pub scale: Option<Value>,
 }
 
 /// What fails.

@@ -24,6 +24,15 @@ impl DisturbanceKind {
                 }
             }
             Self::Constant => const { &[required("amplitude", Bounds::Any)] },
+            Self::GroundReaction => {
+                const {
+                    &[Parameter {
+                        name: "scale",
+                        default: Some(1.0),
+                        bounds: Bounds::Any,
+                    }]
+                }
+            }
         }
     }
 }

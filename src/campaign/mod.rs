@@ -1,5 +1,6 @@
 //! A campaign: everything that decides the result of a run, checked, in SI units, with nothing optional left.
 
+mod agent;
 mod check;
 pub mod distribution;
 pub mod error;
@@ -7,19 +8,16 @@ pub mod file;
 mod kinds;
 mod validate;
 
+pub use agent::{Agent, Biped, ChannelGroup, FIRST_ATTITUDE, RobotFile, Uav};
 pub use check::Parameter;
 pub use distribution::Distribution;
 pub use error::CampaignError;
 pub use file::{ActuationKind, DisturbanceKind, FaultKind, FaultTarget, ObserverStart, Per};
 
 use crate::reference::Reference;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Channels of a UAV, in the order of every table and list.
-pub const UAV_CHANNELS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
-/// The first attitude channel.
-pub const FIRST_ATTITUDE: usize = 3;
 /// Name of the paper's fault-tolerant controller.
 pub const FTC: &str = "ftc";
 /// Name of the PID computed-torque controller, the paper's text read plainly.
@@ -44,8 +42,10 @@ pub struct Campaign {
     pub controllers: Vec<String>,
     /// Duration and step.
     pub time: Time,
-    /// The plant as the controller models it.
-    pub uav: Uav,
+    /// What the agents are, as the controller models them.
+    pub agent: Agent,
+    /// Names of an agent's channels.
+    channels: Vec<Arc<str>>,
     /// Agents per episode, at least 1.
     pub team: usize,
     /// Where each agent is to go.
@@ -103,6 +103,7 @@ impl Campaign {
         let check = check::Check {
             path: &self.path,
             text: &self.text,
+            channels: Vec::new(),
         };
         match own.chain(of_named).find(|(_, path)| !path.is_file()) {
             Some((key, path)) => {
@@ -123,8 +124,20 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
+        Self::parse_with_robot(text, path, None)
+    }
+
+    /// The same with the text of the robot's file, where that is at hand and the file may not be there.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse_with_robot(
+        text: &str,
+        path: &Path,
+        robot: Option<&str>,
+    ) -> Result<Self, CampaignError> {
         let file = toml::from_str(text).map_err(|error| error::syntax(path, &error))?;
-        validate::validate(file, text, path)
+        validate::validate(file, text, path, robot)
     }
 
     /// The JSON Schema of the campaign file.
@@ -133,25 +146,28 @@ impl Campaign {
         schemars::schema_for!(file::CampaignFile).to_value()
     }
 
-    /// Channels of one agent.
+    /// Names of the channels of one agent, in the order of every table and list.
     #[must_use]
-    pub fn channels(&self) -> &'static [&'static str] {
-        &UAV_CHANNELS
+    pub fn channels(&self) -> &[Arc<str>] {
+        &self.channels
+    }
+
+    /// The groups of channels whose errors may be averaged: metres and radians are never mixed. Each has gains of its own.
+    #[must_use]
+    pub fn channel_groups(&self) -> Vec<ChannelGroup> {
+        self.agent.channel_groups()
+    }
+
+    /// Whether limits cut the commands.
+    #[must_use]
+    pub fn is_limited(&self) -> bool {
+        self.agent.actuation() != ActuationKind::Full
     }
 
     /// Whether the agents of a team act on each other in some episode.
     #[must_use]
     pub fn is_coupled(&self) -> bool {
         self.team > 1 && !self.kappa.is_zero()
-    }
-
-    /// The groups of channels whose errors may be averaged: metres and radians are never mixed.
-    #[must_use]
-    pub fn channel_groups(&self) -> [(&'static str, Range<usize>); 2] {
-        [
-            ("position", 0..FIRST_ATTITUDE),
-            ("attitude", FIRST_ATTITUDE..UAV_CHANNELS.len()),
-        ]
     }
 }
 
@@ -178,31 +194,6 @@ impl Time {
     pub fn onset_step(&self, onset_s: f64) -> u32 {
         (onset_s / self.step_s - 1e-9).ceil().max(0.0) as u32
     }
-}
-
-/// The UAV of (3) as the controller models it, with the limits of the `thrust` actuation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Uav {
-    /// What the command acts through.
-    pub actuation: ActuationKind,
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Principal inertias, kg m^2.
-    pub inertia_kg_m2: [f64; 3],
-    /// Translational damping, N s/m.
-    pub drag_n_s_m: f64,
-    /// Rotational damping, N m s.
-    pub angular_drag_n_m_s: f64,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
-    /// Bandwidth of the attitude command filter, rad/s.
-    pub command_filter_rad_s: f64,
-    /// Largest thrust, N.
-    pub max_thrust_n: f64,
-    /// Largest torque about each axis, N m.
-    pub max_torque_n_m: f64,
-    /// Largest commanded roll and pitch, rad.
-    pub max_tilt_rad: f64,
 }
 
 /// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
@@ -312,8 +303,8 @@ pub struct Requirement {
 /// Where the gains come from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainSource {
-    /// Weights of the position and of the attitude channels.
-    pub designs: [crate::synthesis::ChannelDesign; 2],
+    /// Weights of each channel group.
+    pub designs: Vec<crate::synthesis::ChannelDesign>,
     /// Name of the preset that the weights start from.
     pub preset: String,
     /// File that replaces the synthesized gains.

@@ -1,34 +1,33 @@
 //! From the file as written to the campaign that runs: every range, shape and contradiction is checked here, and nowhere
 //! later.
 
+mod agent;
 mod reference;
 mod signals;
 mod synthesis;
 
-use super::check::{Bounds, CHANNELS, Check, Parameter};
+use super::check::{Bounds, Check, Parameter};
 use super::error::CampaignError;
 use super::file::*;
-use super::{Campaign, Initial, Requirement, Time, Uav, Verdict};
+use super::{Agent, Campaign, Initial, Requirement, Time, Verdict};
 use std::path::Path;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
 /// Memory that the reference tables of a campaign may take, bytes.
 const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
-/// The paper's UAV, section V.
-const PAPER_MASS_KG: f64 = 2.0;
-const PAPER_INERTIA_KG_M2: [f64; 3] = [1.25, 1.25, 2.2];
-const PAPER_DRAG_N_S_M: f64 = 0.01;
-const PAPER_ANGULAR_DRAG_N_M_S: f64 = 0.012;
-const PAPER_GRAVITY_M_S2: f64 = 9.81;
-
-/// Checks a file as written.
+/// Checks a file as written; `robot` is the text of the robot's file, if it is not to be read.
 pub(super) fn validate(
     file: CampaignFile,
     text: &str,
     path: &Path,
+    robot: Option<&str>,
 ) -> Result<Campaign, CampaignError> {
-    let check = Check { path, text };
+    let mut check = Check {
+        path,
+        text,
+        channels: Vec::new(),
+    };
     check.name("name", &file.name)?;
     if file.episodes == 0 {
         return Err(check.invalid(
@@ -48,20 +47,9 @@ pub(super) fn validate(
             "give the agents of one episode",
         ));
     }
-    let table_bytes = f64::from(2 * time.steps + 1) * (team * CHANNELS) as f64 * 32.0;
-    if table_bytes > MAX_TABLE_BYTES {
-        return Err(check.invalid(
-            "time.duration_s",
-            file.time.duration_s,
-            &format!(
-                "the references of {team} agents over {} steps would take {:.0} GiB",
-                time.steps,
-                table_bytes / 1_073_741_824.0
-            ),
-            "shorten it, take longer steps or a smaller team",
-        ));
-    }
-    let uav = check.uav(&file.agent)?;
+    let agent = check.agent(&file.agent, robot)?;
+    check.channels = agent.channels();
+    check.table_fits(&file.time, time, team, &agent)?;
     let scale = |key: &str, value: &Option<Value>| {
         check.of_agents(
             key,
@@ -72,7 +60,7 @@ pub(super) fn validate(
             team,
         )
     };
-    let synthesis = check.synthesis(&file.synthesis, &uav)?;
+    let synthesis = check.synthesis(&file.synthesis, &agent)?;
     let controllers = check.controllers(file.controllers.as_deref(), &synthesis)?;
     Ok(Campaign {
         path: path.to_path_buf(),
@@ -83,9 +71,8 @@ pub(super) fn validate(
         requirements: check.requirements(&file.require, &controllers)?,
         controllers,
         time,
-        uav,
         team,
-        reference: check.reference(&file.reference, team, uav.actuation)?,
+        reference: check.reference(&file.reference, team, &agent)?,
         synthesis,
         mass_scale: scale("agent.mass_scale", &file.agent.mass_scale)?,
         inertia_scale: scale("agent.inertia_scale", &file.agent.inertia_scale)?,
@@ -102,15 +89,20 @@ pub(super) fn validate(
             .disturbance
             .iter()
             .enumerate()
-            .map(|(index, disturbance)| check.disturbance(index, disturbance, team, time))
+            .map(|(index, disturbance)| {
+                let walks = file.reference.kind == ReferenceKind::Walk;
+                check.disturbance(index, disturbance, team, time, walks)
+            })
             .collect::<Result<_, _>>()?,
         faults: file
             .fault
             .iter()
             .enumerate()
-            .map(|(index, fault)| check.fault(index, fault, team, time, uav.actuation))
+            .map(|(index, fault)| check.fault(index, fault, team, time, agent.actuation()))
             .collect::<Result<_, _>>()?,
         verdict: check.verdict(&file.verdict.unwrap_or_default())?,
+        channels: check.channels,
+        agent,
     })
 }
 
@@ -183,104 +175,34 @@ impl Check<'_> {
         Ok(time)
     }
 
-    fn uav(&self, file: &AgentFile) -> Result<Uav, CampaignError> {
-        let AgentKind::Uav = file.kind;
-        let actuation = file.actuation.unwrap_or(ActuationKind::Full);
-        let thrust_only = [
-            ("agent.command_filter_rad_s", file.command_filter_rad_s),
-            ("agent.max_thrust_n", file.max_thrust_n),
-            ("agent.max_torque_n_m", file.max_torque_n_m),
-            ("agent.max_tilt_rad", file.max_tilt_rad),
-        ];
-        if actuation == ActuationKind::Full
-            && let Some((key, Some(value))) =
-                thrust_only.into_iter().find(|(_, value)| value.is_some())
-        {
-            return Err(self.invalid(
-                key,
-                in_toml(value),
-                "only the actuation \"thrust\" has this",
-                "remove it or set agent.actuation = \"thrust\"",
-            ));
-        }
-        let number = |key: &str, value: Option<f64>, default: f64, bounds: Bounds| {
-            self.number(key, value.unwrap_or(default), bounds)
+    /// Refuses references that no memory would hold.
+    fn table_fits(
+        &self,
+        file: &TimeFile,
+        time: Time,
+        team: usize,
+        agent: &Agent,
+    ) -> Result<(), CampaignError> {
+        let row_bytes = match agent {
+            Agent::Uav(_) => 32,
+            // Beside the reference a row of M(r) and, where limits cut, of its inverse.
+            Agent::Biped(biped) if biped.actuation == ActuationKind::Full => 96,
+            Agent::Biped(_) => 160,
         };
-        let inertia_kg_m2 = file.inertia_kg_m2.unwrap_or(PAPER_INERTIA_KG_M2);
-        for (axis, inertia) in inertia_kg_m2.into_iter().enumerate() {
-            let key = format!("agent.inertia_kg_m2[{axis}]");
-            self.number(&key, inertia, Bounds::Positive)?;
+        let bytes = f64::from(2 * time.steps + 1) * (team * self.channels.len() * row_bytes) as f64;
+        if bytes <= MAX_TABLE_BYTES {
+            return Ok(());
         }
-        let [jx, jy, jz] = inertia_kg_m2;
-        if jx > jy + jz || jy > jx + jz || jz > jx + jy {
-            return Err(self.invalid(
-                "agent.inertia_kg_m2",
-                format!("{inertia_kg_m2:?}"),
-                "no body has a principal inertia above the sum of the other two",
-                "correct the inertias",
-            ));
-        }
-        let max_tilt_rad = number(
-            "agent.max_tilt_rad",
-            file.max_tilt_rad,
-            1.0,
-            Bounds::Positive,
-        )?;
-        if max_tilt_rad >= std::f64::consts::FRAC_PI_2 {
-            return Err(self.invalid(
-                "agent.max_tilt_rad",
-                in_toml(max_tilt_rad),
-                "must be below pi/2",
-                "use 1.0 or less",
-            ));
-        }
-        Ok(Uav {
-            actuation,
-            mass_kg: number(
-                "agent.mass_kg",
-                file.mass_kg,
-                PAPER_MASS_KG,
-                Bounds::Positive,
-            )?,
-            inertia_kg_m2,
-            drag_n_s_m: number(
-                "agent.drag_n_s_m",
-                file.drag_n_s_m,
-                PAPER_DRAG_N_S_M,
-                Bounds::NonNegative,
-            )?,
-            angular_drag_n_m_s: number(
-                "agent.angular_drag_n_m_s",
-                file.angular_drag_n_m_s,
-                PAPER_ANGULAR_DRAG_N_M_S,
-                Bounds::NonNegative,
-            )?,
-            gravity_m_s2: number(
-                "agent.gravity_m_s2",
-                file.gravity_m_s2,
-                PAPER_GRAVITY_M_S2,
-                Bounds::NonNegative,
-            )?,
-            command_filter_rad_s: number(
-                "agent.command_filter_rad_s",
-                file.command_filter_rad_s,
-                20.0,
-                Bounds::Positive,
-            )?,
-            max_thrust_n: number(
-                "agent.max_thrust_n",
-                file.max_thrust_n,
-                80.0,
-                Bounds::Positive,
-            )?,
-            max_torque_n_m: number(
-                "agent.max_torque_n_m",
-                file.max_torque_n_m,
-                60.0,
-                Bounds::Positive,
-            )?,
-            max_tilt_rad,
-        })
+        Err(self.invalid(
+            "time.duration_s",
+            file.duration_s,
+            &format!(
+                "the references of {team} agents over {} steps would take {:.0} GiB",
+                time.steps,
+                bytes / 1_073_741_824.0
+            ),
+            "shorten it, take longer steps or a smaller team",
+        ))
     }
 
     fn initial(&self, file: Option<&InitialFile>, team: usize) -> Result<Initial, CampaignError> {
@@ -306,22 +228,18 @@ impl Check<'_> {
 
     fn verdict(&self, file: &VerdictFile) -> Result<Verdict, CampaignError> {
         let limit = |key: &str, numbers: &Option<Numbers>| match numbers {
-            None => Ok(vec![f64::INFINITY; CHANNELS]),
-            some => self
-                .numbers(key, some.as_ref(), 0.0, Bounds::Positive)
-                .map(Vec::from),
+            None => Ok(vec![f64::INFINITY; self.channels.len()]),
+            some => self.numbers(key, some.as_ref(), 0.0, Bounds::Positive),
         };
         Ok(Verdict {
             max_error: limit("verdict.max_error", &file.max_error)?,
             max_rmse: limit("verdict.max_rmse", &file.max_rmse)?,
-            settled_error: self
-                .numbers(
-                    "verdict.settled_error",
-                    file.settled_error.as_ref(),
-                    0.05,
-                    Bounds::Positive,
-                )?
-                .to_vec(),
+            settled_error: self.numbers(
+                "verdict.settled_error",
+                file.settled_error.as_ref(),
+                0.05,
+                Bounds::Positive,
+            )?,
         })
     }
 

@@ -4,7 +4,7 @@ use super::lanes::{Lane, MAX_WIDTH};
 use super::plant_uav::inertia;
 use super::signal::{Noise, Signals, Sine, Square, Switch};
 use crate::campaign::{
-    Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE, Fault, FaultChannels, FaultKind,
+    Agent, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE, Fault, FaultChannels, FaultKind,
     FaultTarget,
 };
 use crate::draw::{AgentDraw, Episode, FaultDraw, member};
@@ -59,7 +59,13 @@ impl Block<'_> {
         for (index, fault) in campaign.faults.iter().enumerate() {
             self.add_fault(&mut signals, fault, index, agent, first, entries);
         }
-        let inertia = inertia(&campaign.uav);
+        // A biped's scale is that of M and H as a whole.
+        let inertia = match &campaign.agent {
+            Agent::Uav(uav) => inertia(uav).to_vec(),
+            Agent::Biped(_) => vec![1.0; campaign.channels().len()],
+        };
+        let turns =
+            |channel: usize| matches!(campaign.agent, Agent::Uav(_)) && channel >= FIRST_ATTITUDE;
         let channel = |pick: &dyn Fn(&AgentDraw) -> f64| -> L { self.load(agent, pick) };
         Condition {
             initial: std::array::from_fn(|c| {
@@ -72,10 +78,10 @@ impl Block<'_> {
             signals,
             inverse_inertia: std::array::from_fn(|c| {
                 channel(&|draw| {
-                    let scale = if first + c < FIRST_ATTITUDE {
-                        draw.mass_scale
-                    } else {
+                    let scale = if turns(first + c) {
                         draw.inertia_scale
+                    } else {
+                        draw.mass_scale
                     };
                     1.0 / (inertia[first + c] * scale)
                 })
@@ -127,6 +133,7 @@ impl Block<'_> {
                     *constant = *constant + L::load(&values(0, c));
                 }
             }
+            DisturbanceKind::GroundReaction => {}
             DisturbanceKind::Sine => {
                 let acts =
                     || (0..NC).any(|c| values(0, c).iter().any(|amplitude| *amplitude != 0.0));

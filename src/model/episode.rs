@@ -11,13 +11,10 @@ use super::group::{Advance, Agent, Ending, Group, Setting, Show, Shown};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::plant_uav::{Attitude, Axis, Plant, ReferenceRow, Thrust, inertia, non_inertial};
-use crate::campaign::{ActuationKind, Campaign, FIRST_ATTITUDE, ObserverStart};
+use crate::campaign::{self, ActuationKind, Campaign, FIRST_ATTITUDE, ObserverStart, Uav};
 use crate::draw::Episode;
 use crate::synthesis::LoopGains;
 use std::ops::Range;
-
-/// Channels of a UAV.
-const CHANNELS: usize = 6;
 
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
@@ -43,10 +40,10 @@ pub(crate) struct Part<R> {
     pub(crate) table: Vec<ReferenceRow<R>>,
 }
 
-/// A controller in the precision of the loop: its gains on the position and on the attitude channels.
-#[derive(Debug, Clone, Copy)]
+/// A controller in the precision of the loop: its gains on each channel group.
+#[derive(Debug, Clone)]
 pub struct Controller<R> {
-    pub(crate) gains: [ChannelGains<R>; 2],
+    pub(crate) gains: Vec<ChannelGains<R>>,
     pub(crate) ftc: bool,
 }
 
@@ -72,11 +69,11 @@ pub struct Snapshot {
 
 impl AgentOutcome {
     /// The outcome before anything is known of it.
-    pub(crate) fn blank() -> Self {
+    pub(crate) fn blank(channels: usize) -> Self {
         Self {
             failed_step: None,
             diverged: false,
-            channels: vec![ChannelOutcome::default(); CHANNELS],
+            channels: vec![ChannelOutcome::default(); channels],
         }
     }
 
@@ -89,13 +86,13 @@ impl AgentOutcome {
 }
 
 impl<R: Real> Controller<R> {
-    /// A controller from its gains on the position and on the attitude channels, both of one kind (reading a gains file
-    /// refuses others).
+    /// A controller from its gains on each channel group, all of one kind (reading a gains file refuses others).
     #[must_use]
-    pub fn new([position, attitude]: &[LoopGains; 2]) -> Self {
+    pub fn new(groups: &[LoopGains]) -> Self {
+        let ftc = |gains: &LoopGains| gains.states + OBSERVER == FTC_STATES;
         Self {
-            gains: [ChannelGains::new(position), ChannelGains::new(attitude)],
-            ftc: position.states + OBSERVER == FTC_STATES,
+            gains: groups.iter().map(ChannelGains::new).collect(),
+            ftc: groups.iter().all(ftc),
         }
     }
 }
@@ -104,18 +101,19 @@ impl<R: Real> Model<R> {
     /// Tabulates the references of a campaign.
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {
-        let ends: &[usize] = match campaign.uav.actuation {
-            ActuationKind::Full => &[0, 1, 2, 3, CHANNELS],
-            ActuationKind::Thrust => &[0, CHANNELS],
+        let actuation = campaign.agent.actuation();
+        let ends: &[usize] = match actuation {
+            ActuationKind::Full => &[0, 1, 2, 3, 6],
+            _ => &[0, 6],
         };
         let parts = ends
             .windows(2)
             .map(|ends| ends[0]..ends[1])
             .map(|channels| Part {
-                plant: match (campaign.uav.actuation, channels.start) {
+                plant: match (actuation, channels.start) {
                     (ActuationKind::Thrust, _) => PlantKind::Thrust,
                     (ActuationKind::Full, FIRST_ATTITUDE) => PlantKind::Attitude,
-                    (ActuationKind::Full, _) => PlantKind::Axis,
+                    _ => PlantKind::Axis,
                 },
                 channels,
                 table: Vec::new(),
@@ -128,7 +126,10 @@ impl<R: Real> Model<R> {
         for half_step in 0..=2 * campaign.time.steps {
             let t_s = f64::from(half_step) * campaign.time.step_s / 2.0;
             for agent in 0..campaign.team {
-                let rows = reference_rows(campaign, agent, t_s);
+                let campaign::Agent::Uav(uav) = &campaign.agent else {
+                    continue;
+                };
+                let rows = reference_rows(campaign, uav, agent, t_s);
                 for part in &mut model.parts {
                     part.table.extend(&rows[part.channels.clone()]);
                 }
@@ -169,7 +170,7 @@ impl<R: Real> Model<R> {
         episodes: &[Episode],
         every: Option<u32>,
     ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
-        let blank = AgentOutcome::blank();
+        let blank = AgentOutcome::blank(self.campaign.channels().len());
         let mut flight = Flight {
             model: self,
             controller,
@@ -196,12 +197,13 @@ impl<R: Real> Model<R> {
 /// force, and the feedforward of the attitude is worked out in the loop.
 fn reference_rows<R: Real>(
     campaign: &Campaign,
+    uav: &Uav,
     agent: usize,
     t_s: f64,
-) -> [ReferenceRow<R>; CHANNELS] {
+) -> [ReferenceRow<R>; 6] {
     let points = campaign.reference.at(agent, t_s);
-    let inertia = inertia(&campaign.uav);
-    let non_inertial = non_inertial(&campaign.uav, points.map(|point| point.rate));
+    let inertia = inertia(uav);
+    let non_inertial = non_inertial(uav, std::array::from_fn(|c| points[c].rate));
     std::array::from_fn(|c| {
         let point = points[c];
         [
@@ -227,7 +229,9 @@ struct Flight<'a, R> {
 
 impl<R: Real> Flight<'_, R> {
     fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Part<R>) {
-        let uav = &self.model.campaign.uav;
+        let campaign::Agent::Uav(uav) = &self.model.campaign.agent else {
+            return;
+        };
         match part.plant {
             PlantKind::Axis => {
                 self.group::<L, _, 1, NS, 0>(Axis::new(uav, part.channels.start), part);
@@ -342,7 +346,8 @@ impl<R: Real> Flight<'_, R> {
         shown: &[[Shown; NC]],
     ) {
         if snapshot == self.snapshots.len() {
-            let agents = vec![vec![Shown::default(); CHANNELS]; shown.len()];
+            let agents =
+                vec![vec![Shown::default(); self.model.campaign.channels().len()]; shown.len()];
             self.snapshots.push(Snapshot { step, agents });
         }
         for (agent, shown) in self.snapshots[snapshot].agents.iter_mut().zip(shown) {

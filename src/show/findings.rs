@@ -19,10 +19,11 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     line(
         &mut text,
         &format!(
-            "{}: {} episodes x {} UAVs, seed {}, {precision} on {}, {:.1} s of flying",
+            "{}: {} episodes x {} {}, seed {}, {precision} on {}, {:.1} s of flying",
             campaign.name,
             manifest.episodes,
             campaign.team,
+            campaign.agent.plural(),
             campaign.seed,
             engines.join(", then on "),
             manifest.times.loop_s
@@ -36,7 +37,10 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     }
     line(
         &mut text,
-        "\nfailures (an episode fails with any of its UAVs)",
+        &format!(
+            "\nfailures (an episode fails with any of its {})",
+            campaign.agent.plural()
+        ),
     );
     line(
         &mut text,

@@ -2,7 +2,7 @@
 
 use super::line;
 use urts_mc::campaign::{Campaign, FTC, PID, PID_TUNED};
-use urts_mc::gains::{self, ChannelController, GainSet, ROLES, built_in};
+use urts_mc::gains::{self, GainSet, built_in};
 use urts_mc::synthesis::{ChannelSynthesis, ControllerGains};
 
 /// The gains of a campaign and what is known about them.
@@ -16,37 +16,39 @@ pub(crate) fn gains(campaign: &Campaign, gains: &GainSet) -> String {
             campaign.synthesis.preset
         ),
     );
-    let same = campaign.synthesis.designs[0] == campaign.synthesis.designs[1];
+    let names = campaign.channel_groups();
     for controller in &gains.controllers {
         line(
             &mut text,
             &format!("\n{} ({})", controller.name, controller.source),
         );
-        if same && controller.channels[0].gains == controller.channels[1].gains {
-            line(&mut text, "  position and attitude channels");
-            channel(
-                &mut text,
-                &controller.channels[0].gains,
-                controller.channels[0].findings.as_ref(),
-            );
-        } else {
-            for (role, name) in ROLES.iter().enumerate() {
-                line(&mut text, &format!("  {name} channels"));
-                let ChannelController {
-                    gains, findings, ..
-                } = &controller.channels[role];
-                channel(&mut text, gains, findings.as_ref());
+        // Groups with the same gains are said once.
+        let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
+        for (index, (name, own)) in names.iter().zip(&controller.groups).enumerate() {
+            let design = &campaign.synthesis.designs[index];
+            let same = said.iter_mut().find(|(_, other)| {
+                campaign.synthesis.designs[*other] == *design
+                    && controller.groups[*other].gains == own.gains
+            });
+            match same {
+                Some((names, _)) => names.push(name.role.name()),
+                None => said.push((vec![name.role.name()], index)),
             }
+        }
+        for (names, index) in said {
+            line(&mut text, &format!("  {}", names.join(" and ")));
+            let own = &controller.groups[index];
+            channel(&mut text, &own.gains, own.findings.as_ref());
         }
     }
     text
 }
 
-/// The gains of a preset's channel type and what is known about them.
+/// The gains of a preset's channel group and what is known about them.
 pub(crate) fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
     let mut text = String::new();
     for name in [FTC, PID, PID_TUNED] {
-        line(&mut text, &format!("{name}, {role} channels"));
+        line(&mut text, &format!("{name}, {role}"));
         let (gains, findings) = built_in(synthesis, name);
         channel(&mut text, gains, Some(&findings));
     }

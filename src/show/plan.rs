@@ -2,9 +2,9 @@
 
 use super::line;
 use serde_json::{Value, json};
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Agent, Campaign};
 use urts_mc::draw::draw;
-use urts_mc::gains::{GainSet, ROLES};
+use urts_mc::gains::GainSet;
 
 /// Episodes that `check` draws to show real ranges.
 const SHOWN_DRAWS: u32 = 200;
@@ -13,6 +13,12 @@ const SHOWN_DRAWS: u32 = 200;
 pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     let mut text = String::new();
     let steps = f64::from(campaign.time.steps);
+    let agents = campaign.agent.plural();
+    // As the benchmarks found.
+    let rate = match campaign.agent {
+        Agent::Uav(_) => 25.0,
+        Agent::Biped(_) => 4.0,
+    };
     let work =
         steps * f64::from(campaign.episodes) * (campaign.team * campaign.controllers.len()) as f64;
     line(
@@ -22,7 +28,7 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     line(
         &mut text,
         &format!(
-            "  {} episodes of {} UAVs over {} s in steps of {} s, seed {}",
+            "  {} episodes of {} {agents} over {} s in steps of {} s, seed {}",
             campaign.episodes,
             campaign.team,
             steps * campaign.time.step_s,
@@ -33,14 +39,14 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     line(
         &mut text,
         &format!(
-            "  controllers {}: {:.2e} UAV-steps, about {:.0} s on one core with 16 SIMD lanes (at 25 million a second)",
+            "  controllers {}: {:.2e} steps of {agents}, about {:.0} s on one core with 16 SIMD lanes (at {rate} million a second)",
             campaign.controllers.join(", "),
             work,
-            (work / 25e6).ceil()
+            (work / (1e6 * rate)).ceil()
         ),
     );
     for controller in &gains.controllers {
-        for (role, channel) in ROLES.iter().zip(&controller.channels) {
+        for (group, channel) in campaign.channel_groups().iter().zip(&controller.groups) {
             let level = channel
                 .findings
                 .as_ref()
@@ -51,8 +57,10 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             line(
                 &mut text,
                 &format!(
-                    "  gains of {} on {role}: {}{level}",
-                    controller.name, controller.source
+                    "  gains of {} on {}: {}{level}",
+                    controller.name,
+                    group.role.name(),
+                    controller.source
                 ),
             );
         }

@@ -25,7 +25,19 @@ pub enum ChannelRole {
     /// Roll, pitch and yaw of a UAV, rad.
     Attitude,
     /// The twelve joints of a biped, rad.
-    Joint,
+    Joints,
+}
+
+impl ChannelRole {
+    /// The name in files and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Attitude => "attitude",
+            Self::Joints => "joints",
+        }
+    }
 }
 
 impl Preset {
@@ -54,7 +66,7 @@ impl Preset {
                 (ChannelRole::Position, uav_position_physical()),
                 (ChannelRole::Attitude, uav_paper()),
             ],
-            Self::BipedPaper => vec![(ChannelRole::Joint, biped_paper())],
+            Self::BipedPaper => vec![(ChannelRole::Joints, biped_paper())],
         }
     }
 }

@@ -128,7 +128,7 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
 fn val_the_setting_that_is_sent_fills_its_struct() {
     let world = World::<_, 6, 10, 4>::new(shapes::probed()[5].clone(), shapes::thrust());
     let controller = Controller {
-        gains: [world.gains[0], world.gains[5]],
+        gains: vec![world.gains[0], world.gains[5]],
         ftc: true,
     };
     let mut plants = 0;

@@ -22,8 +22,8 @@ use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::synthesis::LoopGains;
 
-/// Gains of every controller, on position and attitude.
-type Gains = Vec<[LoopGains; 2]>;
+/// Gains of every controller on every channel group.
+type Gains = Vec<Vec<LoopGains>>;
 
 /// Everything at once: tests/suite/gpu/mixed.toml, with parts of its text replaced; each part must be there.
 fn mixed(changes: &[(&str, &str)]) -> Campaign {

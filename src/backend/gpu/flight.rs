@@ -103,7 +103,7 @@ impl<'g> GpuFlyer<'g> {
     pub fn new(
         gpu: &'g Gpu,
         campaign: &Campaign,
-        gains: &[[LoopGains; 2]],
+        gains: &[Vec<LoopGains>],
         tuning: Tuning,
     ) -> Result<Self, GpuError> {
         Self::rewritten(gpu, campaign, gains, tuning, &|text| text)
@@ -117,12 +117,12 @@ impl<'g> GpuFlyer<'g> {
     pub fn rewritten(
         gpu: &'g Gpu,
         campaign: &Campaign,
-        gains: &[[LoopGains; 2]],
+        gains: &[Vec<LoopGains>],
         tuning: Tuning,
         rewrite: &dyn Fn(String) -> String,
     ) -> Result<Self, GpuError> {
         let model: Model<f32> = Model::new(campaign);
-        let controllers: Vec<_> = gains.iter().map(Controller::new).collect();
+        let controllers: Vec<_> = gains.iter().map(|groups| Controller::new(groups)).collect();
         let layout = binding_layout(gpu);
         let start = Instant::now();
         let mut groups: Vec<Group> = Vec::new();
@@ -327,7 +327,10 @@ impl<'g> GpuFlyer<'g> {
     fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<Flown>, GpuError> {
         let campaign = &self.model.campaign;
         let steps = campaign.time.steps;
-        let blank = vec![vec![AgentOutcome::blank(); campaign.team]; self.controllers.len()];
+        let blank = vec![
+            vec![AgentOutcome::blank(campaign.channels().len()); campaign.team];
+            self.controllers.len()
+        ];
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
         let mut flown: Vec<Flown> = episodes
             .into_iter()

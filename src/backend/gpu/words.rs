@@ -1,7 +1,7 @@
 //! What travels to and from the shaders of a group of channels, as 32-bit words: the setting, the draws, the outcomes.
 
 use super::shader::Shape;
-use crate::campaign::{Campaign, Time};
+use crate::campaign::{Agent, Campaign, Time};
 use crate::draw::Episode;
 use crate::model::Shown;
 use crate::model::condition::{Block, Condition, Entries};
@@ -233,7 +233,9 @@ pub(crate) fn setting(
     part: &Part<f32>,
     controller: &Controller<f32>,
 ) -> Vec<u8> {
-    let uav = &campaign.uav;
+    let Agent::Uav(uav) = &campaign.agent else {
+        return Vec::new();
+    };
     let h = Step::<f32>::new(campaign.time.step_s);
     let head = SettingHead {
         seed: key(campaign.seed),
@@ -257,13 +259,12 @@ pub(crate) fn setting(
             0.0,
         ]));
     }
-    let [position, attitude] = &controller.gains;
-    let gains: &[&ChannelGains<f32>] = match part.plant {
-        PlantKind::Axis => &[position],
-        PlantKind::Attitude => &[attitude],
-        PlantKind::Thrust => &[position, attitude],
+    let gains = match part.plant {
+        PlantKind::Axis => &controller.gains[..1],
+        PlantKind::Attitude => &controller.gains[1..],
+        PlantKind::Thrust => &controller.gains,
     };
-    for &gains in gains {
+    for gains in gains {
         bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
     }
     bytes

@@ -1,14 +1,17 @@
 //! `[reference]`.
 
-use super::super::FIRST_ATTITUDE;
-use super::super::check::{Bounds, CHANNELS, Check};
+use super::super::check::{Bounds, Check};
 use super::super::error::CampaignError;
 use super::super::file::*;
+use super::super::{Agent, FIRST_ATTITUDE};
 use crate::reference::path::{DEFAULT_STEP_M, PathLimits};
-use crate::reference::{Reference, Sinusoid, WaypointPath};
+use crate::reference::walk::{Foot, Gait, WalkError};
+use crate::reference::{AgentWalk, Reference, Sinusoid, Walk, WaypointPath};
+use crate::robot::Robot;
+use std::sync::Arc;
 
 /// The channel after roll and pitch.
-const YAW: usize = CHANNELS - 1;
+const YAW: usize = FIRST_ATTITUDE + 2;
 
 impl Check<'_> {
     /// The references of a team.
@@ -16,73 +19,100 @@ impl Check<'_> {
         &self,
         file: &ReferenceFile,
         team: usize,
-        actuation: ActuationKind,
+        agent: &Agent,
     ) -> Result<Reference, CampaignError> {
-        match file.kind {
-            ReferenceKind::Sinusoid => {
-                let foreign = [
-                    ("points_m", file.points_m.is_some()),
-                    ("offset_m", file.offset_m.is_some()),
-                    ("max_speed_m_s", file.max_speed_m_s.is_some()),
-                    (
-                        "max_acceleration_m_s2",
-                        file.max_acceleration_m_s2.is_some(),
-                    ),
-                    ("step_m", file.step_m.is_some()),
-                ];
-                self.unused("reference", "sinusoid", &foreign)?;
-                self.blocks("reference.agents", file.agents.as_deref(), team)?;
-                let base = SinusoidFile {
-                    center: file.center.clone(),
-                    amplitude: file.amplitude.clone(),
-                    frequency_rad_s: file.frequency_rad_s.clone(),
-                    phase_rad: file.phase_rad.clone(),
-                };
-                (0..team)
-                    .map(|agent| {
-                        self.sinusoid(
-                            &base,
-                            file.agents.as_ref().map(|blocks| &blocks[agent]),
-                            agent,
-                            actuation,
-                        )
-                    })
-                    .collect::<Result<_, _>>()
-                    .map(Reference::Sinusoid)
+        self.only_own_keys(file)?;
+        self.blocks("reference.agents", file.agents.as_deref(), team)?;
+        match (file.kind, agent) {
+            (ReferenceKind::Sinusoid, _) => {
+                let sinusoid = |index| self.sinusoid(file, index, agent.actuation());
+                let agents = (0..team).map(sinusoid).collect::<Result<_, _>>();
+                agents.map(Reference::Sinusoid)
             }
-            ReferenceKind::Waypoints => {
-                let foreign = [
-                    ("center", file.center.is_some()),
-                    ("amplitude", file.amplitude.is_some()),
-                    ("frequency_rad_s", file.frequency_rad_s.is_some()),
-                    ("phase_rad", file.phase_rad.is_some()),
-                    ("agents", file.agents.is_some()),
-                ];
-                self.unused("reference", "waypoints", &foreign)?;
-                self.waypoints(file, team)
-            }
+            (ReferenceKind::Waypoints, Agent::Uav(_)) => self.waypoints(file, team),
+            (ReferenceKind::Walk, Agent::Biped(biped)) => self.walks(file, team, &biped.robot),
+            (ReferenceKind::Waypoints, Agent::Biped(_)) => Err(self.invalid(
+                "reference.kind",
+                "\"waypoints\"",
+                "a path through space is a UAV's",
+                "use \"walk\" with points (x, y), or \"sinusoid\"",
+            )),
+            (ReferenceKind::Walk, Agent::Uav(_)) => Err(self.invalid(
+                "reference.kind",
+                "\"walk\"",
+                "a UAV does not walk",
+                "use \"waypoints\" with points (x, y, z), or \"sinusoid\"",
+            )),
         }
+    }
+
+    /// Refuses keys of other kinds of references.
+    fn only_own_keys(&self, file: &ReferenceFile) -> Result<(), CampaignError> {
+        use ReferenceKind::{Sinusoid, Walk, Waypoints};
+        let of: [(&str, bool, &[ReferenceKind]); 12] = [
+            ("center", file.center.is_some(), &[Sinusoid]),
+            ("amplitude", file.amplitude.is_some(), &[Sinusoid]),
+            (
+                "frequency_rad_s",
+                file.frequency_rad_s.is_some(),
+                &[Sinusoid],
+            ),
+            ("phase_rad", file.phase_rad.is_some(), &[Sinusoid]),
+            ("points_m", file.points_m.is_some(), &[Waypoints, Walk]),
+            ("offset_m", file.offset_m.is_some(), &[Waypoints]),
+            ("max_speed_m_s", file.max_speed_m_s.is_some(), &[Waypoints]),
+            (
+                "max_acceleration_m_s2",
+                file.max_acceleration_m_s2.is_some(),
+                &[Waypoints],
+            ),
+            ("step_m", file.step_m.is_some(), &[Waypoints]),
+            ("start_s", file.start_s.is_some(), &[Walk]),
+            ("gait", file.gait.is_some(), &[Walk]),
+            ("agents", file.agents.is_some(), &[Sinusoid, Walk]),
+        ];
+        let kind = match file.kind {
+            Sinusoid => "sinusoid",
+            Waypoints => "waypoints",
+            Walk => "walk",
+        };
+        let foreign = of.map(|(key, given, kinds)| (key, given && !kinds.contains(&file.kind)));
+        self.unused("reference", kind, &foreign)?;
+        for (agent, block) in file.agents.iter().flatten().enumerate() {
+            let walks = file.kind == Walk;
+            let foreign = [
+                ("center", block.center.is_some() && walks),
+                ("amplitude", block.amplitude.is_some() && walks),
+                ("frequency_rad_s", block.frequency_rad_s.is_some() && walks),
+                ("phase_rad", block.phase_rad.is_some() && walks),
+                ("points_m", block.points_m.is_some() && !walks),
+                ("start_s", block.start_s.is_some() && !walks),
+            ];
+            self.unused(&format!("reference.agents[{agent}]"), kind, &foreign)?;
+        }
+        Ok(())
     }
 
     fn sinusoid(
         &self,
-        base: &SinusoidFile,
-        block: Option<&SinusoidFile>,
+        file: &ReferenceFile,
         agent: usize,
         actuation: ActuationKind,
-    ) -> Result<[Sinusoid; CHANNELS], CampaignError> {
-        let of = |name: &str, moves: bool, pick: fn(&SinusoidFile) -> Option<&Numbers>| {
-            let own = block.and_then(pick);
+    ) -> Result<Vec<Sinusoid>, CampaignError> {
+        let block = file.agents.as_ref().map(|blocks| &blocks[agent]);
+        let of = |name: &str, moves: bool, base: &Option<Numbers>, own: Option<&Numbers>| {
             let key = if own.is_some() {
                 format!("reference.agents[{agent}].{name}")
             } else {
                 format!("reference.{name}")
             };
-            let values = self.numbers(&key, own.or_else(|| pick(base)), 0.0, Bounds::Any)?;
-            let tilts = values[FIRST_ATTITUDE..YAW]
-                .iter()
-                .any(|value| *value != 0.0);
-            if actuation == ActuationKind::Thrust && moves && tilts {
+            let values = self.numbers(&key, own.or(base.as_ref()), 0.0, Bounds::Any)?;
+            let tilts = || {
+                values[FIRST_ATTITUDE..YAW]
+                    .iter()
+                    .any(|value| *value != 0.0)
+            };
+            if actuation == ActuationKind::Thrust && moves && tilts() {
                 return Err(self.invalid(
                     key,
                     format!("{values:?}"),
@@ -92,18 +122,109 @@ impl Check<'_> {
             }
             Ok(values)
         };
-        let center = of("center", true, |file| file.center.as_ref())?;
-        let amplitude = of("amplitude", true, |file| file.amplitude.as_ref())?;
-        let frequency_rad_s = of("frequency_rad_s", false, |file| {
-            file.frequency_rad_s.as_ref()
-        })?;
-        let phase_rad = of("phase_rad", false, |file| file.phase_rad.as_ref())?;
-        Ok(std::array::from_fn(|c| Sinusoid {
+        let own = |pick: fn(&ReferenceBlock) -> Option<&Numbers>| block.and_then(pick);
+        let center = own(|block| block.center.as_ref());
+        let center = of("center", true, &file.center, center)?;
+        let amplitude = own(|block| block.amplitude.as_ref());
+        let amplitude = of("amplitude", true, &file.amplitude, amplitude)?;
+        let frequency = own(|block| block.frequency_rad_s.as_ref());
+        let frequency = of("frequency_rad_s", false, &file.frequency_rad_s, frequency)?;
+        let phase = own(|block| block.phase_rad.as_ref());
+        let phase = of("phase_rad", false, &file.phase_rad, phase)?;
+        let sinusoid = |c: usize| Sinusoid {
             center: center[c],
             amplitude: amplitude[c],
-            frequency_rad_s: frequency_rad_s[c],
-            phase_rad: phase_rad[c],
-        }))
+            frequency_rad_s: frequency[c],
+            phase_rad: phase[c],
+        };
+        Ok((0..self.channels.len()).map(sinusoid).collect())
+    }
+
+    /// Points of so many coordinates, under a key.
+    fn points<const N: usize>(
+        &self,
+        key: &str,
+        points: Option<&[Vec<f64>]>,
+    ) -> Result<Vec<[f64; N]>, CampaignError> {
+        let Some(points) = points else {
+            return Err(self.invalid(key, "absent", "this kind needs it", "add it"));
+        };
+        let point = |(index, point): (usize, &Vec<f64>)| {
+            <[f64; N]>::try_from(point.as_slice()).map_err(|_| {
+                self.invalid(
+                    format!("{key}[{index}]"),
+                    format!("{point:?}"),
+                    &format!("a point of this kind has {N} coordinates"),
+                    "complete or shorten it",
+                )
+            })
+        };
+        points.iter().enumerate().map(point).collect()
+    }
+
+    fn walks(
+        &self,
+        file: &ReferenceFile,
+        team: usize,
+        robot: &Robot,
+    ) -> Result<Reference, CampaignError> {
+        let gait = file.gait.clone().unwrap_or_default();
+        let mut planned: Vec<(Vec<[f64; 2]>, Arc<Walk>)> = Vec::new();
+        let mut walks = Vec::with_capacity(team);
+        for agent in 0..team {
+            let block = file.agents.as_ref().map(|blocks| &blocks[agent]);
+            let own = block.and_then(|block| block.points_m.as_deref());
+            let key = match own {
+                Some(_) => format!("reference.agents[{agent}].points_m"),
+                None => "reference.points_m".to_string(),
+            };
+            let points = self.points(&key, own.or(file.points_m.as_deref()))?;
+            let walk = match planned.iter().find(|(known, _)| *known == points) {
+                Some((_, walk)) => Arc::clone(walk),
+                None => Arc::new(self.walk(&key, &points, &gait, robot)?),
+            };
+            let start = block.and_then(|block| block.start_s);
+            let key = match start {
+                Some(_) => format!("reference.agents[{agent}].start_s"),
+                None => "reference.start_s".to_string(),
+            };
+            let start_s = self.number(&key, start.or(file.start_s).unwrap_or(0.0), Bounds::Any)?;
+            planned.push((points, Arc::clone(&walk)));
+            walks.push(AgentWalk { walk, start_s });
+        }
+        Ok(Reference::Walk(walks))
+    }
+
+    fn walk(
+        &self,
+        key: &str,
+        points: &[[f64; 2]],
+        file: &GaitFile,
+        robot: &Robot,
+    ) -> Result<Walk, CampaignError> {
+        let gait = gait(file);
+        match file.com_offset_m {
+            None => Walk::plan(robot, points, &gait),
+            Some(offset_m) => Walk::plan_with_com_offset(robot, points, &gait, offset_m),
+        }
+        .map_err(|error| match error {
+            WalkError::Gait {
+                name,
+                value,
+                limit,
+                remedy,
+            } => self.invalid(
+                format!("reference.gait.{name}"),
+                in_toml(value),
+                &limit,
+                remedy,
+            ),
+            other => {
+                let text = other.to_string();
+                let (limit, remedy) = text.rsplit_once("; ").unwrap_or((&text, "correct it"));
+                self.invalid(key, format!("{points:?}"), limit, remedy)
+            }
+        })
     }
 
     fn waypoints(&self, file: &ReferenceFile, team: usize) -> Result<Reference, CampaignError> {
@@ -115,10 +236,7 @@ impl Check<'_> {
                 "add it",
             )
         };
-        let points = file
-            .points_m
-            .as_deref()
-            .ok_or_else(|| missing("points_m"))?;
+        let points: Vec<[f64; 3]> = self.points("reference.points_m", file.points_m.as_deref())?;
         let limits = PathLimits {
             max_speed_m_s: file.max_speed_m_s.ok_or_else(|| missing("max_speed_m_s"))?,
             max_acceleration_m_s2: file
@@ -168,5 +286,45 @@ impl Check<'_> {
             })
             .collect::<Result<_, _>>()
             .map(Reference::Waypoints)
+    }
+}
+
+/// The shipped gait with the file's overrides; its numbers are checked when a walk is planned.
+fn gait(file: &GaitFile) -> Gait {
+    let GaitFile {
+        sampling_s,
+        step_length_m,
+        step_height_m,
+        step_period_s,
+        double_support_s,
+        foot_offset_m,
+        pelvis_height_m,
+        ankle_height_m,
+        zmp_ahead_m,
+        standing_before_s,
+        standing_after_s,
+        first_foot,
+        smoothing_step_m,
+        com_offset_m: _,
+    } = *file;
+    let g1 = Gait::G1;
+    Gait {
+        sampling_s: sampling_s.unwrap_or(g1.sampling_s),
+        step_length_m: step_length_m.unwrap_or(g1.step_length_m),
+        step_height_m: step_height_m.unwrap_or(g1.step_height_m),
+        step_period_s: step_period_s.unwrap_or(g1.step_period_s),
+        double_support_s: double_support_s.unwrap_or(g1.double_support_s),
+        foot_offset_m: foot_offset_m.unwrap_or(g1.foot_offset_m),
+        pelvis_height_m: pelvis_height_m.unwrap_or(g1.pelvis_height_m),
+        ankle_height_m: ankle_height_m.unwrap_or(g1.ankle_height_m),
+        zmp_ahead_m: zmp_ahead_m.unwrap_or(g1.zmp_ahead_m),
+        standing_before_s: standing_before_s.unwrap_or(g1.standing_before_s),
+        standing_after_s: standing_after_s.unwrap_or(g1.standing_after_s),
+        first_foot: match first_foot {
+            None => g1.first_foot,
+            Some(FootFile::Left) => Foot::Left,
+            Some(FootFile::Right) => Foot::Right,
+        },
+        smoothing_step_m: smoothing_step_m.unwrap_or(g1.smoothing_step_m),
     }
 }

@@ -1,6 +1,6 @@
 //! `[[disturbance]]` and `[[fault]]`.
 
-use super::super::check::{Bounds, CHANNELS, Check};
+use super::super::check::{Bounds, Check};
 use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::{Distribution, Disturbance, Drawn, FIRST_ATTITUDE, Fault, FaultChannels, Time};
@@ -12,15 +12,24 @@ const MAX_STEP_RAD: f64 = 0.5;
 const THRUST: usize = FIRST_ATTITUDE - 1;
 
 impl Check<'_> {
-    /// A disturbance.
+    /// A disturbance; `walks` says whether the reference is a walk.
     pub(super) fn disturbance(
         &self,
         index: usize,
         file: &DisturbanceFile,
         team: usize,
         time: Time,
+        walks: bool,
     ) -> Result<Disturbance, CampaignError> {
         let table = format!("disturbance[{index}]");
+        if file.kind == DisturbanceKind::GroundReaction && !walks {
+            return Err(self.invalid(
+                format!("{table}.kind"),
+                "\"ground-reaction\"",
+                "the ground answers a walk",
+                "set reference.kind = \"walk\", or remove it",
+            ));
+        }
         let parameters = self.parameters(
             &table,
             file,
@@ -152,17 +161,18 @@ impl Check<'_> {
         key: &str,
         file: Option<&ChannelsFile>,
     ) -> Result<FaultChannels, CampaignError> {
+        let count = self.channels.len();
         match file {
-            None => Ok(FaultChannels::These((0..CHANNELS).collect())),
+            None => Ok(FaultChannels::These((0..count).collect())),
             Some(ChannelsFile::Word(word)) if word == "all" => {
-                Ok(FaultChannels::These((0..CHANNELS).collect()))
+                Ok(FaultChannels::These((0..count).collect()))
             }
             Some(ChannelsFile::Word(word)) if word == "one" => Ok(FaultChannels::One),
             Some(ChannelsFile::Numbers(numbers))
                 if !numbers.is_empty()
                     && numbers
                         .iter()
-                        .all(|number| (1..=CHANNELS).contains(&(*number as usize)))
+                        .all(|number| (1..=count).contains(&(*number as usize)))
                     && (1..numbers.len()).all(|k| !numbers[..k].contains(&numbers[k])) =>
             {
                 Ok(FaultChannels::These(
@@ -170,12 +180,11 @@ impl Check<'_> {
                 ))
             }
             Some(other) => {
-                Err(self.invalid(
-                    key,
-                    shown(other),
-                    "\"all\", \"one\", or a list of different channel numbers from 1 (x, y, z, roll, pitch, yaw)",
-                    "correct it",
-                ))
+                let limit = format!(
+                    "\"all\", \"one\", or a list of different channel numbers from 1 ({})",
+                    self.channels.join(", ")
+                );
+                Err(self.invalid(key, shown(other), &limit, "correct it"))
             }
         }
     }

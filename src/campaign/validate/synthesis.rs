@@ -3,7 +3,7 @@
 use super::super::check::Check;
 use super::super::error::{CampaignError, nearest};
 use super::super::file::*;
-use super::super::{FTC, GainSource, NamedGains, PID, PID_TUNED, Uav};
+use super::super::{Agent, FTC, GainSource, NamedGains, PID, PID_TUNED};
 use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
 use std::path::Path;
 
@@ -12,34 +12,47 @@ impl Check<'_> {
     pub(super) fn synthesis(
         &self,
         file: &SynthesisFile,
-        uav: &Uav,
+        agent: &Agent,
     ) -> Result<GainSource, CampaignError> {
-        let preset = file.preset.clone().unwrap_or_else(|| {
-            if uav.actuation == ActuationKind::Full {
-                "uav-paper"
-            } else {
-                "uav-physical"
+        let known: Vec<Preset> = match agent {
+            Agent::Uav(uav) if uav.actuation == ActuationKind::Full => {
+                vec![Preset::UavPaper, Preset::UavPhysical]
             }
-            .to_string()
-        });
-        let designs = Preset::ALL
-            .into_iter()
-            .find(|known| known.name() == preset)
-            .map(Preset::designs);
-        let Some(
-            [
-                (ChannelRole::Position, position),
-                (ChannelRole::Attitude, attitude),
-            ],
-        ) = designs.as_deref()
-        else {
-            return Err(self.invalid(
-                "synthesis.preset",
-                format!("{preset:?}"),
-                "a UAV's presets are \"uav-paper\" and \"uav-physical\"",
-                &take(&preset, ["uav-paper", "uav-physical"]),
-            ));
+            Agent::Uav(_) => vec![Preset::UavPhysical, Preset::UavPaper],
+            Agent::Biped(_) => vec![Preset::BipedPaper],
         };
+        let preset = match &file.preset {
+            None => known.first(),
+            Some(name) => known.iter().find(|preset| preset.name() == name),
+        };
+        let Some(preset) = preset else {
+            let names: Vec<String> = known
+                .iter()
+                .map(|preset| format!("{:?}", preset.name()))
+                .collect();
+            let name = file.preset.as_deref().unwrap_or_default();
+            let limit = format!("the presets of {} are {}", agent.plural(), names.join(", "));
+            let remedy = take(name, known.iter().map(|preset| preset.name()));
+            return Err(self.invalid("synthesis.preset", format!("{name:?}"), &limit, &remedy));
+        };
+        let tables = [
+            (ChannelRole::Position, &file.position),
+            (ChannelRole::Attitude, &file.attitude),
+            (ChannelRole::Joints, &file.joints),
+        ];
+        let groups = agent.channel_groups();
+        let foreign = tables.map(|(role, table)| {
+            let own = groups.iter().any(|group| group.role == role);
+            (role.name(), table.is_some() && !own)
+        });
+        self.unused("synthesis", preset.name(), &foreign)?;
+        let design = |(role, design): (ChannelRole, ChannelDesign)| {
+            let table = tables.iter().find(|(of, _)| *of == role);
+            let weights = table.and_then(|(_, weights)| weights.as_ref());
+            self.design(&format!("synthesis.{}", role.name()), design, weights)
+        };
+        let designs = preset.designs().into_iter().map(design);
+        let designs = designs.collect::<Result<_, _>>()?;
         let beside = |file: &str| self.path.parent().unwrap_or(Path::new("")).join(file);
         let mut named = Vec::new();
         for (name, entry) in &file.named {
@@ -60,19 +73,8 @@ impl Check<'_> {
             });
         }
         Ok(GainSource {
-            designs: [
-                self.design(
-                    "synthesis.position",
-                    position.clone(),
-                    file.position.as_ref(),
-                )?,
-                self.design(
-                    "synthesis.attitude",
-                    attitude.clone(),
-                    file.attitude.as_ref(),
-                )?,
-            ],
-            preset,
+            designs,
+            preset: preset.name().to_string(),
             gains: file.gains.as_deref().map(beside),
             named,
         })

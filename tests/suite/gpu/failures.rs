@@ -10,7 +10,7 @@ use urts_mc::gains::GainSet;
 use urts_mc::reference::Reference;
 use urts_mc::synthesis::LoopGains;
 
-fn small() -> (Campaign, Vec<[LoopGains; 2]>) {
+fn small() -> (Campaign, Vec<Vec<LoopGains>>) {
     let campaign = altered(
         "smoke",
         &[
@@ -221,7 +221,7 @@ fn with_team(mut campaign: Campaign, team: usize) -> Campaign {
     let Reference::Sinusoid(agents) = &mut campaign.reference else {
         panic!("a campaign on sinusoids");
     };
-    agents.resize(team, agents[agents.len() - 1]);
+    agents.resize(team, agents[agents.len() - 1].clone());
     campaign.team = team;
     campaign
 }

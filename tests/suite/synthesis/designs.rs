@@ -53,10 +53,10 @@ fn synthesis_survives_its_file_bit_for_bit() {
 fn presets_name_their_channels_by_role() {
     let roles =
         |preset: Preset| -> Vec<_> { preset.designs().into_iter().map(|(role, _)| role).collect() };
-    use ChannelRole::{Attitude, Joint, Position};
+    use ChannelRole::{Attitude, Joints, Position};
     assert_eq!(roles(Preset::UavPaper), [Position, Attitude]);
     assert_eq!(roles(Preset::UavPhysical), [Position, Attitude]);
-    assert_eq!(roles(Preset::BipedPaper), [Joint]);
+    assert_eq!(roles(Preset::BipedPaper), [Joints]);
     for preset in Preset::ALL {
         let quoted = serde_json::to_string(&preset).unwrap();
         assert_eq!(quoted, format!("\"{}\"", preset.name()));

@@ -1,0 +1,179 @@
+//! `[agent]`.
+
+use super::super::check::{Bounds, Check};
+use super::super::error::CampaignError;
+use super::super::file::*;
+use super::super::{Agent, Biped, RobotFile, Uav};
+use crate::robot::{self, Robot};
+use std::path::Path;
+
+/// The paper's UAV, section V.
+const PAPER_MASS_KG: f64 = 2.0;
+const PAPER_INERTIA_KG_M2: [f64; 3] = [1.25, 1.25, 2.2];
+const PAPER_DRAG_N_S_M: f64 = 0.01;
+const PAPER_ANGULAR_DRAG_N_M_S: f64 = 0.012;
+const PAPER_GRAVITY_M_S2: f64 = 9.81;
+
+impl Check<'_> {
+    /// What the agents are; `robot` is the text of the robot's file, if it is not to be read.
+    pub(super) fn agent(
+        &self,
+        file: &AgentFile,
+        robot: Option<&str>,
+    ) -> Result<Agent, CampaignError> {
+        match file.kind {
+            AgentKind::Uav => {
+                self.unused("agent", "uav", &[("robot", file.robot.is_some())])?;
+                self.uav(file).map(Agent::Uav)
+            }
+            AgentKind::Biped => {
+                let of_uavs = [
+                    ("inertia_scale", file.inertia_scale.is_some()),
+                    ("mass_kg", file.mass_kg.is_some()),
+                    ("inertia_kg_m2", file.inertia_kg_m2.is_some()),
+                    ("drag_n_s_m", file.drag_n_s_m.is_some()),
+                    ("angular_drag_n_m_s", file.angular_drag_n_m_s.is_some()),
+                    ("gravity_m_s2", file.gravity_m_s2.is_some()),
+                    ("command_filter_rad_s", file.command_filter_rad_s.is_some()),
+                    ("max_thrust_n", file.max_thrust_n.is_some()),
+                    ("max_torque_n_m", file.max_torque_n_m.is_some()),
+                    ("max_tilt_rad", file.max_tilt_rad.is_some()),
+                ];
+                self.unused("agent", "biped", &of_uavs)?;
+                self.biped(file, robot).map(Agent::Biped)
+            }
+        }
+    }
+
+    fn biped(&self, file: &AgentFile, text: Option<&str>) -> Result<Biped, CampaignError> {
+        let actuation = file.actuation.unwrap_or(ActuationKind::Full);
+        if actuation == ActuationKind::Thrust {
+            return Err(self.invalid(
+                "agent.actuation",
+                "\"thrust\"",
+                "a biped's joints have torques",
+                "use \"full\", or \"limited\" to cut them at the robot's limits",
+            ));
+        }
+        let beside = |name: &String| self.path.parent().unwrap_or(Path::new("")).join(name);
+        let path = file.robot.as_ref().map_or(robot::G1_PATH.into(), beside);
+        let text = match (text, &file.robot) {
+            (Some(text), _) => text.to_string(),
+            (None, None) => robot::G1.to_string(),
+            (None, Some(_)) => Robot::text(&path)?,
+        };
+        let file = RobotFile { path, text };
+        Ok(Biped {
+            actuation,
+            robot: Robot::parse(&file.text, &file.path)?,
+            file,
+        })
+    }
+
+    fn uav(&self, file: &AgentFile) -> Result<Uav, CampaignError> {
+        let actuation = file.actuation.unwrap_or(ActuationKind::Full);
+        if actuation == ActuationKind::Limited {
+            return Err(self.invalid(
+                "agent.actuation",
+                "\"limited\"",
+                "a UAV is actuated in \"full\" or by \"thrust\", which has limits",
+                "use one of these",
+            ));
+        }
+        let thrust_only = [
+            ("agent.command_filter_rad_s", file.command_filter_rad_s),
+            ("agent.max_thrust_n", file.max_thrust_n),
+            ("agent.max_torque_n_m", file.max_torque_n_m),
+            ("agent.max_tilt_rad", file.max_tilt_rad),
+        ];
+        if actuation == ActuationKind::Full
+            && let Some((key, Some(value))) =
+                thrust_only.into_iter().find(|(_, value)| value.is_some())
+        {
+            return Err(self.invalid(
+                key,
+                in_toml(value),
+                "only the actuation \"thrust\" has this",
+                "remove it or set agent.actuation = \"thrust\"",
+            ));
+        }
+        let number = |key: &str, value: Option<f64>, default: f64, bounds: Bounds| {
+            self.number(key, value.unwrap_or(default), bounds)
+        };
+        let inertia_kg_m2 = file.inertia_kg_m2.unwrap_or(PAPER_INERTIA_KG_M2);
+        for (axis, inertia) in inertia_kg_m2.into_iter().enumerate() {
+            let key = format!("agent.inertia_kg_m2[{axis}]");
+            self.number(&key, inertia, Bounds::Positive)?;
+        }
+        let [jx, jy, jz] = inertia_kg_m2;
+        if jx > jy + jz || jy > jx + jz || jz > jx + jy {
+            return Err(self.invalid(
+                "agent.inertia_kg_m2",
+                format!("{inertia_kg_m2:?}"),
+                "no body has a principal inertia above the sum of the other two",
+                "correct the inertias",
+            ));
+        }
+        let max_tilt_rad = number(
+            "agent.max_tilt_rad",
+            file.max_tilt_rad,
+            1.0,
+            Bounds::Positive,
+        )?;
+        if max_tilt_rad >= std::f64::consts::FRAC_PI_2 {
+            return Err(self.invalid(
+                "agent.max_tilt_rad",
+                in_toml(max_tilt_rad),
+                "must be below pi/2",
+                "use 1.0 or less",
+            ));
+        }
+        Ok(Uav {
+            actuation,
+            mass_kg: number(
+                "agent.mass_kg",
+                file.mass_kg,
+                PAPER_MASS_KG,
+                Bounds::Positive,
+            )?,
+            inertia_kg_m2,
+            drag_n_s_m: number(
+                "agent.drag_n_s_m",
+                file.drag_n_s_m,
+                PAPER_DRAG_N_S_M,
+                Bounds::NonNegative,
+            )?,
+            angular_drag_n_m_s: number(
+                "agent.angular_drag_n_m_s",
+                file.angular_drag_n_m_s,
+                PAPER_ANGULAR_DRAG_N_M_S,
+                Bounds::NonNegative,
+            )?,
+            gravity_m_s2: number(
+                "agent.gravity_m_s2",
+                file.gravity_m_s2,
+                PAPER_GRAVITY_M_S2,
+                Bounds::NonNegative,
+            )?,
+            command_filter_rad_s: number(
+                "agent.command_filter_rad_s",
+                file.command_filter_rad_s,
+                20.0,
+                Bounds::Positive,
+            )?,
+            max_thrust_n: number(
+                "agent.max_thrust_n",
+                file.max_thrust_n,
+                80.0,
+                Bounds::Positive,
+            )?,
+            max_torque_n_m: number(
+                "agent.max_torque_n_m",
+                file.max_torque_n_m,
+                60.0,
+                Bounds::Positive,
+            )?,
+            max_tilt_rad,
+        })
+    }
+}
