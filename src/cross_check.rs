@@ -226,9 +226,10 @@ impl CrossCheck {
                 self.verdicts_differ_clearly += 1;
             }
         }
+        // Demands beyond limits that cut nothing are counted too, but change no trajectory.
         let saturated = |traced: &Traced| {
             let mut channels = traced.outcomes.iter().flat_map(|agent| &agent.channels);
-            channels.any(|channel| channel.saturated_fraction > 0.0)
+            campaign.is_limited() && channels.any(|channel| channel.saturated_fraction > 0.0)
         };
         let calm = own == Status::Ok && reference == Status::Ok;
         if !calm || saturated(found) || saturated(expected) {

@@ -1,7 +1,7 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use crate::backend::Flown;
-use crate::campaign::{Campaign, ChannelGroup, Time};
+use crate::campaign::{Agent, Campaign, ChannelGroup, Time};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
@@ -377,9 +377,11 @@ impl<'a> Judged<'a> {
 
 /// Every effective parameter of an agent.
 fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
-    row.real(|| "mass_scale".into(), draw.mass_scale)
-        .real(|| "inertia_scale".into(), draw.inertia_scale)
-        .real(|| "kappa".into(), draw.kappa);
+    row.real(|| "mass_scale".into(), draw.mass_scale);
+    if let Agent::Uav(_) = campaign.agent {
+        row.real(|| "inertia_scale".into(), draw.inertia_scale);
+    }
+    row.real(|| "kappa".into(), draw.kappa);
     let initial = [
         ("error", &draw.error),
         ("error_rate", &draw.error_rate),

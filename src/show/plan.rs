@@ -108,7 +108,9 @@ fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
     for episode in 0..SHOWN_DRAWS.min(campaign.episodes) {
         for agent in draw(campaign, episode).agents {
             add("mass_scale".into(), &[agent.mass_scale]);
-            add("inertia_scale".into(), &[agent.inertia_scale]);
+            if let Agent::Uav(_) = campaign.agent {
+                add("inertia_scale".into(), &[agent.inertia_scale]);
+            }
             add("kappa".into(), &[agent.kappa]);
             add("initial error".into(), &agent.error);
             add("initial error_rate".into(), &agent.error_rate);

@@ -1,6 +1,7 @@
 //! The program as its user meets it: exit codes, what is said and where, what is written and what is not.
 
 mod backends;
+mod bipeds;
 mod campaign_files;
 mod gains;
 mod output;

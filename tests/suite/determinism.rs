@@ -12,8 +12,13 @@ use urts_mc::output::OutputDir;
 use urts_mc::replay::replay;
 use urts_mc::run::{Extras, run};
 
-/// The campaign with noise and every other kind of signal added, short, and with a number of episodes that fills no block.
-fn everything() -> Campaign {
+/// Campaigns of UAVs and of robots with noise and every other kind of signal, short, and with a number of episodes that fills no
+/// block.
+fn everything() -> [Campaign; 2] {
+    [uavs(), robots()]
+}
+
+fn uavs() -> Campaign {
     let noise = "[verdict]";
     let more = r#"[[disturbance]]
 kind = "constant"
@@ -46,6 +51,59 @@ magnitude = 3.0
             (noise, more),
             ("duration_s = 6.0", "duration_s = 4.5"),
             ("episodes = 32", "episodes = 37"),
+        ],
+    )
+}
+
+fn robots() -> Campaign {
+    let more = r#"[coupling]
+kappa = { choice = [0.0, 1.0] }
+
+[[disturbance]]
+kind = "sine"
+amplitude = { uniform = [0.0, 5.0] }
+frequency_rad_s = 3.0
+
+[[fault]]
+target = "sensor"
+kind = "noise"
+onset_s = 1.0
+std = { uniform = [0.0001, 0.001] }
+
+[[fault]]
+target = "sensor"
+kind = "smoothed-square"
+amplitude = { uniform = [0.01, 0.1] }
+period_s = 2.0
+smoothing = 0.1
+
+[[fault]]
+target = "actuator"
+kind = "loss-of-effectiveness"
+probability = 0.5
+channels = "one"
+onset_s = { uniform = [0.5, 2.0] }
+magnitude = { uniform = [0.1, 0.5] }
+
+[[fault]]
+target = "actuator"
+kind = "bias"
+channels = [1, 11]
+onset_s = { uniform = [0.5, 2.0] }
+magnitude = 1.0
+
+[verdict]"#;
+    altered(
+        "biped-ground-reaction",
+        &[
+            ("[verdict]", more),
+            ("kind = \"biped\"", "kind = \"biped\"\nteam = 2"),
+            (
+                "[1.0, 0.0]]",
+                "[1.0, 0.0]]\n[[reference.agents]]\n[[reference.agents]]\nstart_s = 0.3",
+            ),
+            ("duration_s = 9.0", "duration_s = 4.5"),
+            ("episodes = 512", "episodes = 37"),
         ],
     )
 }
@@ -105,8 +163,11 @@ fn files(
 
 #[test]
 fn the_tables_have_the_same_bytes_for_any_thread_count_and_simd_width() {
-    let campaign = everything();
-    let reference = files(&campaign, 1, Some(Simd::Avx2), Precision::F32);
+    everything().iter().for_each(same_bytes);
+}
+
+fn same_bytes(campaign: &Campaign) {
+    let reference = files(campaign, 1, Some(Simd::Avx2), Precision::F32);
     let names: Vec<&str> = reference.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
@@ -125,7 +186,7 @@ fn the_tables_have_the_same_bytes_for_any_thread_count_and_simd_width() {
     for (threads, simd) in [(2, Simd::Avx2), (1, Simd::Avx512), (2, Simd::Avx512)] {
         if simd.is_available() {
             assert!(
-                files(&campaign, threads, Some(simd), Precision::F32) == reference,
+                files(campaign, threads, Some(simd), Precision::F32) == reference,
                 "{threads} threads, {simd:?}"
             );
         }
@@ -144,31 +205,36 @@ fn the_tables_have_the_same_bytes_for_any_thread_count_and_simd_width() {
 
 #[test]
 fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
-    let long = everything();
-    let mut short = long.clone();
-    short.episodes = 10;
-    let all = fly(&long, None, 2, Precision::F32);
-    assert_eq!(all.len(), 37);
-    assert!(all[..10] == fly(&short, None, 2, Precision::F32));
-    assert!(all[0].outcomes != all[1].outcomes, "episodes differ");
+    for long in everything() {
+        let mut short = long.clone();
+        short.episodes = 10;
+        let all = fly(&long, None, 2, Precision::F32);
+        assert_eq!(all.len(), 37);
+        assert!(all[..10] == fly(&short, None, 2, Precision::F32));
+        assert!(all[0].outcomes != all[1].outcomes, "episodes differ");
+    }
 }
 
 #[test]
 fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
-    let campaign = everything();
-    let gains = GainSet::obtain(&campaign).unwrap();
-    let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
-    let all = cpu.fly(0..37, &|_| ());
-    assert!(cpu.fly(5..23, &|_| ()) == all[5..23]);
+    for campaign in everything() {
+        let gains = GainSet::obtain(&campaign).unwrap();
+        let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
+        let all = cpu.fly(0..37, &|_| ());
+        assert!(cpu.fly(5..23, &|_| ()) == all[5..23]);
+    }
 }
 
 #[test]
 fn all_controllers_of_an_episode_meet_the_same_draws() {
-    let campaign = everything();
+    everything().iter().for_each(same_draws);
+}
+
+fn same_draws(campaign: &Campaign) {
     let mut reversed = campaign.clone();
     reversed.controllers.reverse();
     let (forward, backward) = (
-        fly(&campaign, None, 1, Precision::F32),
+        fly(campaign, None, 1, Precision::F32),
         fly(&reversed, None, 1, Precision::F32),
     );
     for (a, b) in forward.iter().zip(&backward) {
@@ -181,19 +247,22 @@ fn all_controllers_of_an_episode_meet_the_same_draws() {
 
 #[test]
 fn a_replayed_episode_has_the_metrics_of_its_row() {
+    everything().iter().for_each(same_metrics);
+}
+
+fn same_metrics(campaign: &Campaign) {
     for precision in [Precision::F32, Precision::F64] {
-        let campaign = everything();
         let dir = tempfile::tempdir().unwrap();
-        let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
+        let out = OutputDir::claim(&dir.path().join("run"), campaign, false).unwrap();
         run(
-            &campaign,
+            campaign,
             &Settings::cpu(precision),
             &out,
             Extras::default(),
             &|_| (),
         )
         .unwrap();
-        let flown = fly(&campaign, None, 1, precision);
+        let flown = fly(campaign, None, 1, precision);
         for (episode, controller) in [(0, "ftc"), (21, "pid"), (36, "pid-tuned")] {
             let replayed = replay(out.path(), episode, controller, None).unwrap();
             let index = campaign

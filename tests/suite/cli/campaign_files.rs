@@ -7,6 +7,11 @@ use super::{Place, smoke};
 
 /// Each case is refused with 2, the file's name and the words, in one paragraph, and nothing is written.
 fn all_refused(table: &str) {
+    all_refused_of(&smoke, table);
+}
+
+/// The same with another campaign than the smoke one.
+pub(super) fn all_refused_of(text: &dyn Fn(&[(&str, &str)]) -> String, table: &str) {
     let plain = |text: &str| text.trim().replace("\\n", "\n");
     for case in table.lines().filter(|line| !line.trim().is_empty()) {
         let (changes, words) = case.split_once(" :: ").unwrap();
@@ -21,7 +26,8 @@ fn all_refused(table: &str) {
             .collect();
         let words: Vec<String> = words.split(" ~ ").map(plain).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let said = Place::smoke(&changes).refuses(&["run", "c.toml", "--out", "out"], 2, &words);
+        let said =
+            Place::with(&text(&changes)).refuses(&["run", "c.toml", "--out", "out"], 2, &words);
         assert!(said.starts_with("error: c.toml: "), "{said}");
         assert!(!said.trim().contains("\n\n"), "two paragraphs: {said}");
     }
