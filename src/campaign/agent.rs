@@ -80,13 +80,21 @@ pub struct ChannelGroup {
 }
 
 impl Agent {
+    /// What so many of them are called.
+    #[must_use]
+    pub fn noun(&self, count: usize) -> &'static str {
+        match (self, count) {
+            (Self::Uav(_), 1) => "UAV",
+            (Self::Uav(_), _) => "UAVs",
+            (Self::Biped(_), 1) => "robot",
+            (Self::Biped(_), _) => "robots",
+        }
+    }
+
     /// What several of them are called.
     #[must_use]
     pub fn plural(&self) -> &'static str {
-        match self {
-            Self::Uav(_) => "UAVs",
-            Self::Biped(_) => "robots",
-        }
+        self.noun(2)
     }
 
     /// What the command acts through.

@@ -25,7 +25,7 @@ pub enum CampaignError {
     },
     /// The robot's file holds no robot.
     #[error(transparent)]
-    Robot(#[from] crate::robot::RobotError),
+    Robot(#[from] Box<crate::robot::RobotError>),
     /// A value out of its limits, or a contradiction.
     #[error("{}: {key} = {value}: {limit}; {remedy}", path.display())]
     Invalid {

@@ -9,6 +9,7 @@ use urts_mc::cross_check::{CrossCheck, ERROR_LIMIT, RMSE_LIMIT};
 use urts_mc::flight::{Engine, Leg};
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
+use urts_mc::synthesis::ChannelRole;
 
 /// The findings of a run at a glance.
 pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
@@ -23,7 +24,7 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             campaign.name,
             manifest.episodes,
             campaign.team,
-            campaign.agent.plural(),
+            campaign.agent.noun(campaign.team),
             campaign.seed,
             engines.join(", then on "),
             manifest.times.loop_s
@@ -37,10 +38,13 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     }
     line(
         &mut text,
-        &format!(
-            "\nfailures (an episode fails with any of its {})",
-            campaign.agent.plural()
-        ),
+        &match campaign.team {
+            1 => "\nfailures".to_string(),
+            _ => format!(
+                "\nfailures (an episode fails with any of its {})",
+                campaign.agent.plural()
+            ),
+        },
     );
     line(
         &mut text,
@@ -75,13 +79,17 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         &mut text,
         "\nRMS error from settle_s on, median [95 % interval] and 95th percentile over the episodes",
     );
-    line(
-        &mut text,
-        &format!(
-            "  {:<12} {:>34}  {:>34}",
-            "controller", "position, m", "attitude, rad"
-        ),
-    );
+    let roles: Vec<ChannelRole> = campaign
+        .channel_groups()
+        .iter()
+        .map(|group| group.role)
+        .collect();
+    let mut head = format!("  {:<12}", "controller");
+    for role in &roles {
+        let title = format!("{}, {}", role.name(), role.unit());
+        head.push_str(&format!(" {title:>34} "));
+    }
+    line(&mut text, head.trim_end());
     for name in &campaign.controllers {
         let cell = |group: &str| {
             let row = findings.summary.iter().find(|row| {
@@ -102,14 +110,11 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
                 format!("{}{interval}, {}", value(0), value(1))
             })
         };
-        line(
-            &mut text,
-            &format!(
-                "  {name:<12} {:>34}  {:>34}",
-                cell("position"),
-                cell("attitude")
-            ),
-        );
+        let mut cells = format!("  {name:<12}");
+        for role in &roles {
+            cells.push_str(&format!(" {:>34} ", cell(role.name())));
+        }
+        line(&mut text, cells.trim_end());
     }
     if !findings.comparisons.is_empty() {
         line(
@@ -117,6 +122,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             "\npair by pair: how many times smaller the RMS error of the first is, median [BCa 95 %], and how often it wins",
         );
     }
+    let names = campaign.channels().iter().map(|name| name.len());
+    let width = names.max().unwrap_or(0).max(8);
     for comparison in &findings.comparisons {
         line(
             &mut text,
@@ -125,12 +132,12 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         for ratio in &comparison.ratios {
             line(
                 &mut text,
-                &format!("    {:<9} {}", ratio.name, ratio_text(ratio)),
+                &format!("    {:<width$}  {}", ratio.name, ratio_text(ratio)),
             );
         }
         line(
             &mut text,
-            &format!("    failures  {}", failures_text(comparison)),
+            &format!("    {:<width$}  {}", "failures", failures_text(comparison)),
         );
     }
     let times = manifest.times;

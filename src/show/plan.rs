@@ -28,9 +28,10 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     line(
         &mut text,
         &format!(
-            "  {} episodes of {} {agents} over {} s in steps of {} s, seed {}",
+            "  {} episodes of {} {} over {} s in steps of {} s, seed {}",
             campaign.episodes,
             campaign.team,
+            campaign.agent.noun(campaign.team),
             steps * campaign.time.step_s,
             campaign.time.step_s,
             campaign.seed

@@ -38,6 +38,15 @@ impl ChannelRole {
             Self::Joints => "joints",
         }
     }
+
+    /// The unit of an error.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Position => "m",
+            Self::Attitude | Self::Joints => "rad",
+        }
+    }
 }
 
 impl Preset {

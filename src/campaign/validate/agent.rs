@@ -60,12 +60,12 @@ impl Check<'_> {
         let text = match (text, &file.robot) {
             (Some(text), _) => text.to_string(),
             (None, None) => robot::G1.to_string(),
-            (None, Some(_)) => Robot::text(&path)?,
+            (None, Some(_)) => Robot::text(&path).map_err(Box::new)?,
         };
         let file = RobotFile { path, text };
         Ok(Biped {
             actuation,
-            robot: Robot::parse(&file.text, &file.path)?,
+            robot: Robot::parse(&file.text, &file.path).map_err(Box::new)?,
             file,
         })
     }

@@ -25,7 +25,7 @@ const POINTS: &str = "points_m = [[0.0, 0.0], [1.0, 0.0]]";
 #[test]
 fn what_a_biped_does_not_have_is_refused() {
     all_refused_of(
-        &walk,
+        walk,
         r#"
 "limited"         => "thrust"            :: agent.actuation (line 15) = "thrust": a biped's joints have torques; use "full", or "limited"
 "limited"         => "full"\nmass_kg = 3.0 :: agent.mass_kg (line 16) ~ "biped" does not have it; remove it
@@ -45,7 +45,7 @@ error = { normal = { mean = 0.0, std = 0.001 } } => error = [0.0, 0.0] :: initia
 #[test]
 fn a_walk_that_cannot_be_is_refused_with_what_is_in_its_way() {
     all_refused_of(
-        &walk,
+        walk,
         r#"
 kind = "walk"     => kind = "waypoints"  :: reference.kind (line 19) = "waypoints" ~ a UAV's; use "walk"
 kind = "walk"     => kind = "sinusoid"   :: reference.points_m (line 20) ~ "sinusoid" does not have it
@@ -68,7 +68,7 @@ points_m = [[0.0, 0.0], [1.0, 0.0]] => :: reference.points_m (line 18) = absent 
     );
     // Without a walk there is no ground to answer it.
     all_refused_of(
-        &|changes| {
+        |changes| {
             let standing = [("kind = \"walk\"", "kind = \"sinusoid\""), (POINTS, "")];
             walk(&[&standing, changes].concat())
         },
@@ -110,7 +110,7 @@ fn a_run_of_robots_is_replayed_without_the_robots_file() {
     let table = fs::read_to_string(repository("campaigns/robots/g1_12dof.toml")).unwrap();
     place.write("own.toml", &table);
     let said = place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
-    for words in ["1 robots", "joints", "r_ankle_roll"] {
+    for words in ["x 1 robot,", "joints", "r_ankle_roll"] {
         assert!(said.contains(words), "{words:?} is missing from: {said}");
     }
     let rows = place.rows("out/channels.csv");

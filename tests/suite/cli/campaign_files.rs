@@ -7,11 +7,11 @@ use super::{Place, smoke};
 
 /// Each case is refused with 2, the file's name and the words, in one paragraph, and nothing is written.
 fn all_refused(table: &str) {
-    all_refused_of(&smoke, table);
+    all_refused_of(smoke, table);
 }
 
 /// The same with another campaign than the smoke one.
-pub(super) fn all_refused_of(text: &dyn Fn(&[(&str, &str)]) -> String, table: &str) {
+pub(super) fn all_refused_of(text: impl Fn(&[(&str, &str)]) -> String, table: &str) {
     let plain = |text: &str| text.trim().replace("\\n", "\n");
     for case in table.lines().filter(|line| !line.trim().is_empty()) {
         let (changes, words) = case.split_once(" :: ").unwrap();
