@@ -10,7 +10,8 @@ use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES};
 use super::group::{Advance, Agent, Ending, Group, Setting, Show, Shown};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
-use super::plant_uav::{Attitude, Axis, Plant, ReferenceRow, Thrust, inertia, non_inertial};
+use super::plant::{Plant, ReferenceRow};
+use super::plant_uav::{Attitude, Axis, Thrust, inertia, non_inertial};
 use crate::campaign::{self, ActuationKind, Campaign, FIRST_ATTITUDE, ObserverStart, Uav};
 use crate::draw::Episode;
 use crate::synthesis::LoopGains;
@@ -33,10 +34,12 @@ pub(crate) enum PlantKind {
     Thrust,
 }
 
-/// A group of channels and its reference table, `[half step][agent][channel]`.
+/// A group of channels and its reference table, `[half step][agent][channel][row]`.
 pub(crate) struct Part<R> {
     pub(crate) plant: PlantKind,
     pub(crate) channels: Range<usize>,
+    /// Rows of each channel: [`Plant::ROWS`].
+    pub(crate) rows: usize,
     pub(crate) table: Vec<ReferenceRow<R>>,
 }
 
@@ -116,6 +119,7 @@ impl<R: Real> Model<R> {
                     _ => PlantKind::Axis,
                 },
                 channels,
+                rows: 1,
                 table: Vec::new(),
             })
             .collect();

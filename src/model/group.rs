@@ -1,6 +1,6 @@
 //! A group of channels of a whole team, integrated for a block of episodes.
 //!
-//! Groups are the parts of an episode that never act on each other (see `plant_uav`), so each is integrated from start to end
+//! Groups are the parts of an episode that never act on each other (see the plants), so each is integrated from start to end
 //! on its own, while all it needs stays in the first-level cache.
 
 #![expect(
@@ -13,7 +13,7 @@ use super::controller::{ChannelGains, OBSERVER, fault_estimates, feedback, step_
 use super::integrator::{Step, Stepped};
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
 use super::metric::{ChannelOutcome, Limits, Metrics, Sample};
-use super::plant_uav::{Inputs, Plant, ReferenceRow, Response};
+use super::plant::{Inputs, Plant, ReferenceRow, Response};
 use super::signal::Signals;
 
 /// Steps between two flushes of the metrics, counted from step 0.
@@ -39,7 +39,7 @@ pub(crate) struct Setting<'t, P, R, const NC: usize> {
     pub(crate) step_s: f64,
     pub(crate) settle_step: u32,
     pub(crate) seed: u64,
-    /// Reference at every half step, `[half step][agent][channel]`.
+    /// Reference at every half step, `[half step][agent][channel][row]`.
     pub(crate) table: &'t [ReferenceRow<R>],
 }
 
@@ -150,6 +150,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             position,
             velocity,
             force,
+            ground: &self.signals.ground,
             command_gain: &self.signals.command_gain,
             command_bias: &self.signals.command_bias,
             inverse_inertia: &self.inverse_inertia,
@@ -247,7 +248,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     ) -> [L; NC] {
         let mut sum = [L::number(0.0); NC];
         if setting.coupled {
-            for (agent, rows) in self.agents.iter().zip(rows.chunks_exact(NC)) {
+            for (agent, rows) in self.agents.iter().zip(rows.chunks_exact(NC * P::ROWS)) {
                 let [position, _] = agent.motion::<P, STAGE>(&setting.plant, rows);
                 for c in 0..NC {
                     sum[c] = sum[c] + position[c];
@@ -271,7 +272,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     ) {
         let team = self.team_sum::<P, STAGE>(setting, rows);
         let now = L::number(f64::from(self.step));
-        for (agent, rows) in self.agents.iter_mut().zip(rows.chunks_exact(NC)) {
+        for (agent, rows) in self.agents.iter_mut().zip(rows.chunks_exact(NC * P::ROWS)) {
             let response = agent.respond::<P, STAGE>(setting, rows, &team);
             if STAGE == 0 {
                 agent.observe::<P, SETTLED>(&setting.limits, &response, now);
@@ -307,7 +308,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         until: u32,
     ) {
         let h = Step::new(setting.step_s);
-        let stride = self.agents.len() * NC;
+        let stride = self.agents.len() * NC * P::ROWS;
         while self.step < until {
             self.begin_step(setting.seed);
             let first = 2 * self.step as usize * stride;
@@ -348,7 +349,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     ) -> Vec<[Shown; NC]> {
         // Repeating this is harmless: what is held depends on the step alone.
         self.hold(setting.seed);
-        let stride = self.agents.len() * NC;
+        let stride = self.agents.len() * NC * P::ROWS;
         let first = 2 * self.step as usize * stride;
         let rows = &setting.table[first..first + stride];
         let team = self.team_sum::<P, 0>(setting, rows);
@@ -356,7 +357,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         for ((agent, rows), shown) in self
             .agents
             .iter()
-            .zip(rows.chunks_exact(NC))
+            .zip(rows.chunks_exact(NC * P::ROWS))
             .zip(&mut shown)
         {
             let response = agent.respond::<P, 0>(setting, rows, &team);

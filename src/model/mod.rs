@@ -1,6 +1,6 @@
 //! The closed loop of an episode: plant, observer, controller, faults and metrics, generic over the lane type.
 //!
-//! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator` over `plant_uav` and
+//! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator` over a `plant` and
 //! `controller`, and the sums of `metric`. [`episode`] builds groups from draws and collects their outcomes.
 
 pub(crate) mod condition;
@@ -12,6 +12,7 @@ pub mod lanes;
 pub mod leg;
 pub(crate) mod math;
 pub mod metric;
+pub mod plant;
 pub mod plant_uav;
 pub mod rng;
 pub(crate) mod signal;

@@ -1,4 +1,4 @@
-//! The UAV of (3) with the feedforward law (9), in groups of channels that act on each other.
+//! The UAV of (3) in groups of channels that act on each other.
 //!
 //! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust along
 //! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet.
@@ -9,69 +9,8 @@
 )]
 
 use super::lanes::{Lane, Real};
+use super::plant::{Inputs, Plant, ReferenceRow, Response, clamp, splat_row, tabulated};
 use crate::campaign::Uav;
-
-/// One channel's reference at one instant: r, r', r'' and the feedforward M r'' + H(r, r') of (9).
-pub type ReferenceRow<R> = [R; 4];
-
-/// What acts on the channels of one agent at one instant.
-pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
-    /// Reference of each channel.
-    pub(crate) reference: &'a [ReferenceRow<L::Real>],
-    /// u_fb of (21).
-    pub(crate) feedback: [L; NC],
-    /// x.
-    pub(crate) position: [L; NC],
-    /// x'.
-    pub(crate) velocity: [L; NC],
-    /// c + d1 of (12).
-    pub(crate) force: [L; NC],
-    /// What an actuator fault leaves of the command.
-    pub(crate) command_gain: &'a [L; NC],
-    /// What an actuator fault adds to the command.
-    pub(crate) command_bias: &'a [L; NC],
-    /// 1 / true inertia.
-    pub(crate) inverse_inertia: &'a [L; NC],
-}
-
-/// How an agent's channels answer.
-pub(crate) struct Response<L, const NC: usize, const NX: usize> {
-    /// x'' - r''.
-    pub(crate) error_acceleration: [L; NC],
-    /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
-    pub(crate) told: [L; NC],
-    /// The command u of (9) after limits and faults.
-    pub(crate) command: [L; NC],
-    /// By how much the limits cut the command; zero where there are none.
-    pub(crate) excess: [L; NC],
-    /// Derivative of the plant's own `NX` states.
-    pub(crate) extra_rate: [L; NX],
-}
-
-/// A group of `NC` channels of each agent that act on each other, with `NX` states of its own.
-pub(crate) trait Plant<L: Lane, const NC: usize, const NX: usize>:
-    Copy + Send + Sync
-{
-    /// Whether commands can be cut by limits.
-    const LIMITED: bool;
-
-    /// The reference of one agent and its rate: `[r, r']`.
-    fn reference(&self, rows: &[ReferenceRow<L::Real>], extra: &[L; NX]) -> [[L; NC]; 2];
-
-    /// The answer of one agent.
-    fn respond(&self, inputs: &Inputs<'_, L, NC>, extra: &[L; NX]) -> Response<L, NC, NX>;
-}
-
-/// The reference of channels that the table holds.
-#[inline(always)]
-fn tabulated<L: Lane, const NC: usize>(rows: &[ReferenceRow<L::Real>]) -> [[L; NC]; 2] {
-    let mut reference = [[L::number(0.0); NC]; 2];
-    for c in 0..NC {
-        reference[0][c] = L::splat(rows[c][0]);
-        reference[1][c] = L::splat(rows[c][1]);
-    }
-    reference
-}
 
 /// Modelled inertia of each channel.
 #[must_use]
@@ -117,10 +56,11 @@ impl<R: Real> Axis<R> {
 
 impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
     const LIMITED: bool = false;
+    const ROWS: usize = 1;
 
     #[inline(always)]
     fn reference(&self, rows: &[ReferenceRow<L::Real>], _extra: &[L; 0]) -> [[L; 1]; 2] {
-        tabulated(rows)
+        tabulated(rows, 1)
     }
 
     #[inline(always)]
@@ -179,10 +119,11 @@ impl<R: Real> Attitude<R> {
 
 impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
     const LIMITED: bool = false;
+    const ROWS: usize = 1;
 
     #[inline(always)]
     fn reference(&self, rows: &[ReferenceRow<L::Real>], _extra: &[L; 0]) -> [[L; 3]; 2] {
-        tabulated(rows)
+        tabulated(rows, 1)
     }
 
     #[inline(always)]
@@ -256,28 +197,13 @@ pub(crate) fn body_axis<L: Lane>(roll: L, pitch: L, (sin_yaw, cos_yaw): (L, L)) 
     ]
 }
 
-/// A row of the reference table in every lane.
-#[inline(always)]
-fn splat_row<L: Lane>(row: &ReferenceRow<L::Real>) -> [L; 4] {
-    [
-        L::splat(row[0]),
-        L::splat(row[1]),
-        L::splat(row[2]),
-        L::splat(row[3]),
-    ]
-}
-
-#[inline(always)]
-pub(crate) fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
-    value.max(low).min(high)
-}
-
 impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
     const LIMITED: bool = true;
+    const ROWS: usize = 1;
 
     #[inline(always)]
     fn reference(&self, rows: &[ReferenceRow<L::Real>], extra: &[L; 4]) -> [[L; 6]; 2] {
-        let mut reference = tabulated(rows);
+        let mut reference = tabulated(rows, 1);
         let [roll, pitch, roll_rate, pitch_rate] = *extra;
         (reference[0][3], reference[0][4]) = (roll, pitch);
         (reference[1][3], reference[1][4]) = (roll_rate, pitch_rate);

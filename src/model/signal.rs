@@ -61,6 +61,8 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     pub(crate) sines: Vec<[Sine<L>; NC]>,
     pub(crate) squares: Vec<[Square<L>; NC]>,
     pub(crate) constant: [L; NC],
+    /// Scale of the ground's reaction.
+    pub(crate) ground: [L; NC],
     pub(crate) losses: Vec<[Switch<L>; NC]>,
     pub(crate) command_biases: Vec<[Switch<L>; NC]>,
     pub(crate) sensor_biases: Vec<[Switch<L>; NC]>,
@@ -92,6 +94,7 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
             sines: Vec::new(),
             squares: Vec::new(),
             constant: zero,
+            ground: zero,
             losses: Vec::new(),
             command_biases: Vec::new(),
             sensor_biases: Vec::new(),

@@ -10,7 +10,7 @@ use crate::backend::gpu::words::NEVER;
 use crate::model::controller::fault_estimates;
 use crate::model::group::Agent;
 use crate::model::lanes::Lane;
-use crate::model::plant_uav::{ReferenceRow, Response};
+use crate::model::plant::{ReferenceRow, Response};
 
 /// The rows of all agents' channels.
 fn team_rows<const NC: usize, const NS: usize, const NX: usize>(

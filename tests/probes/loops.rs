@@ -7,7 +7,8 @@ use super::world::{Flies, Scene, World};
 use crate::model::controller::{fault_estimates, feedback, injected, step_channel};
 use crate::model::episode::PlantKind;
 use crate::model::integrator::Step;
-use crate::model::plant_uav::{Attitude, Inputs, ReferenceRow, Response};
+use crate::model::plant::{Inputs, ReferenceRow, Response};
+use crate::model::plant_uav::Attitude;
 
 /// Evaluates an expression with the constant `$name` for the stage, which the model takes as a type parameter.
 macro_rules! at_stage {
@@ -290,6 +291,7 @@ pub(super) fn plant<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
                 position: input(5),
                 velocity: input(6),
                 force: input(7),
+                ground: &agent.signals.ground,
                 command_gain: &agent.signals.command_gain,
                 command_bias: &agent.signals.command_bias,
                 inverse_inertia: &agent.inverse_inertia,

@@ -8,7 +8,8 @@ use super::tracked::Tracked;
 use super::world::World;
 use crate::model::lanes::Lane;
 use crate::model::math;
-use crate::model::plant_uav::{Axis, body_axis, clamp};
+use crate::model::plant::clamp;
+use crate::model::plant_uav::{Axis, body_axis};
 use crate::model::rng::{Address, Stream, key, philox4x32, wide_product};
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -63,6 +63,15 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
+        "plant",
+        include_str!("../../src/model/plant.rs"),
+        &[
+            ("reference", "reference"),
+            ("respond", "axis_respond"),
+            ("clamp", "clamp"),
+        ],
+    ),
+    (
         "plant_uav",
         include_str!("../../src/model/plant_uav.rs"),
         &[
@@ -72,7 +81,6 @@ const TWINS: &[(&str, &str, Pairs)] = &[
             ("respond", "thrust_respond"),
             ("acceleration", "attitude_acceleration"),
             ("body_axis", "body_axis"),
-            ("clamp", "clamp"),
         ],
     ),
     (

@@ -15,7 +15,7 @@ use crate::model::group::{Agent, Group, Setting};
 use crate::model::integrator::Step;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::model::metric::{Limits, Sums};
-use crate::model::plant_uav::{Plant, ReferenceRow};
+use crate::model::plant::{Plant, ReferenceRow};
 use crate::model::rng::key;
 use crate::model::signal::{Noise, Signals, Sine, Square, Switch};
 

@@ -439,7 +439,7 @@ impl<'g> GpuFlyer<'g> {
             .saturating_add(self.buffers.window_steps)
             .min(steps);
         for (part, buffers) in self.model.parts.iter().zip(&self.buffers.shared) {
-            let stride = self.model.campaign.team * part.channels.len();
+            let stride = self.model.campaign.team * part.channels.len() * part.rows;
             let rows =
                 &part.table[2 * span.start as usize * stride..(2 * end as usize + 1) * stride];
             self.gpu.write(&buffers.table, 0, rows)?;
