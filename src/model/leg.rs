@@ -19,8 +19,8 @@ mod words;
 
 use super::lanes::Lane;
 use link::{
-    carried, composite, first_moment, first_motion, joined, momentum, next_motion, second_motion,
-    tip, turn, wrench,
+    carried, composite, damped, first_moment, first_motion, joined, momentum, next_motion,
+    second_motion, tip, turn, wrench,
 };
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -46,6 +46,8 @@ pub struct LegJoint {
     pub inertia_kg_m2: Matrix3<f64>,
     /// What the rotor adds to the diagonal of M, kg m^2.
     pub armature_kg_m2: f64,
+    /// Viscous damping of the joint, N m s/rad.
+    pub damping_n_m_s: f64,
 }
 
 impl From<&crate::robot::Joint> for LegJoint {
@@ -58,6 +60,7 @@ impl From<&crate::robot::Joint> for LegJoint {
             com_m: joint.body.com_m,
             inertia_kg_m2: joint.body.inertia_kg_m2,
             armature_kg_m2: joint.armature_kg_m2,
+            damping_n_m_s: joint.damping_n_m_s,
         }
     }
 }
@@ -80,6 +83,8 @@ pub(crate) struct Joint<R> {
     pub(crate) offset: R,
     /// Armature.
     pub(crate) armature: R,
+    /// Damping.
+    pub(crate) damping: R,
     /// Sine and cosine of the twist.
     pub(crate) twist: [R; 2],
     /// Origin in the frame before.
@@ -175,19 +180,19 @@ fn accelerations<L: Lane>(
     let t5 = turn(j5, q[5]);
     let motion = next_motion(k5, j5, t5, rate[5], &motion);
 
-    // Inwards: what the bias leaves of the torques.
+    // Inwards: what damping and bias leave of the torques.
     let load_5 = wrench(j5, &motion);
     let load_4 = joined(k5, j5, t5, &load_5, &own_4);
     let load_3 = joined(k4, j4, t4, &load_4, &own_3);
     let load_2 = joined(k3, j3, t3, &load_3, &own_2);
     let load_1 = joined(k2, j2, t2, &load_2, &own_1);
     let load_0 = carried(k1, j1, t1, &load_1);
-    let b5 = torque[5] - load_5.moment[2];
-    let b4 = torque[4] - load_4.moment[2];
-    let b3 = torque[3] - load_3.moment[2];
-    let b2 = torque[2] - load_2.moment[2];
-    let b1 = torque[1] - load_1.moment[2];
-    let b0 = torque[0] - load_0.moment[2] - own_0;
+    let b5 = damped(j5, rate[5], torque[5]) - load_5.moment[2];
+    let b4 = damped(j4, rate[4], torque[4]) - load_4.moment[2];
+    let b3 = damped(j3, rate[3], torque[3]) - load_3.moment[2];
+    let b2 = damped(j2, rate[2], torque[2]) - load_2.moment[2];
+    let b1 = damped(j1, rate[1], torque[1]) - load_1.moment[2];
+    let b0 = damped(j0, rate[0], torque[0]) - load_0.moment[2] - own_0;
 
     // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints before.
     // With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.

@@ -57,6 +57,7 @@ impl<R: Real> LegModel<R> {
             Joint {
                 offset: R::from_f64(offset[j]),
                 armature: R::from_f64(leg[j].armature_kg_m2),
+                damping: R::from_f64(leg[j].damping_n_m_s),
                 twist: [sine, cosine].map(R::from_f64),
                 lever: link.origin.map(R::from_f64).into(),
                 lever_twice: (2.0 * link.origin).map(R::from_f64).into(),

@@ -50,6 +50,12 @@ pub(super) fn turn<L: Lane>(joint: &Joint<L::Real>, q: L) -> Turn<L> {
     Turn { sine, cosine }
 }
 
+/// What the joint's damping leaves of its torque.
+#[inline(always)]
+pub(super) fn damped<L: Lane>(joint: &Joint<L::Real>, rate: L, torque: L) -> L {
+    rate.mul_add(-L::splat(joint.damping), torque)
+}
+
 /// The first link turns about a fixed axis: only diagonal entries of its spin.
 #[inline(always)]
 pub(super) fn first_motion<L: Lane>(model: &LegModel<L::Real>, t: Turn<L>, rate: L) -> Motion<L> {

@@ -31,7 +31,7 @@ impl From<&Joint<f32>> for JointWords {
         let [xx, yy, xy, xz, yz] = joint.second;
         Self {
             angle: [joint.offset, joint.armature, sine, cosine],
-            lever: [x, y, z, 0.0],
+            lever: [x, y, z, joint.damping],
             lever_twice: [x_twice, y_twice, z_twice, 0.0],
             moments: [hx, hy, xx, yy],
             products: [xy, xz, yz, 0.0],

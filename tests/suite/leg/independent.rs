@@ -40,11 +40,13 @@ fn inverse_dynamics(
         let total: Vector3<f64> = (j..6)
             .map(|k| moments[k] + (points[k] - origins[j]).cross(&forces[k]))
             .sum();
-        axes[j].dot(&total) + leg[j].armature_kg_m2 * acceleration[j]
+        axes[j].dot(&total)
+            + leg[j].armature_kg_m2 * acceleration[j]
+            + leg[j].damping_n_m_s * rate[j]
     })
 }
 
-/// The leg with each joint turned a little more (rad) about axes that differ, and gravity along no axis.
+/// The leg with damped joints, each turned a little more (rad) about axes that differ.
 fn skewed(leg: &[LegJoint; 6], angle: f64) -> [LegJoint; 6] {
     let mut skewed = leg.clone();
     for (j, joint) in (0_u8..).zip(&mut skewed) {
@@ -52,6 +54,7 @@ fn skewed(leg: &[LegJoint; 6], angle: f64) -> [LegJoint; 6] {
         let about = Unit::new_normalize(Vector3::new(1.0 + j, 2.0 - j, 0.5 * j * j - 2.0));
         joint.rotation *= Rotation3::from_axis_angle(&about, angle * (1.0 + 0.2 * j));
         joint.axis *= 1.0 + j;
+        joint.damping_n_m_s = 0.3 + 0.1 * j;
     }
     skewed
 }
