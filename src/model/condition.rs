@@ -133,7 +133,11 @@ impl Block<'_> {
                     *constant = *constant + L::load(&values(0, c));
                 }
             }
-            DisturbanceKind::GroundReaction => {}
+            DisturbanceKind::GroundReaction => {
+                for (c, ground) in signals.ground.iter_mut().enumerate() {
+                    *ground = *ground + L::load(&values(0, c));
+                }
+            }
             DisturbanceKind::Sine => {
                 let acts =
                     || (0..NC).any(|c| values(0, c).iter().any(|amplitude| *amplitude != 0.0));

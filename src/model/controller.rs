@@ -2,7 +2,7 @@
 //!
 //! A channel's state is [int e, e, e', observer]: errors are small numbers, so single precision keeps their digits. The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact
 //! reduction of the 12 of (19): the taps beyond the second are a delay line that never feeds back. The observer of a PID has
-//! the 3 states ehat.
+//! the 3 states ehat. A controller that measures without error has none.
 
 use super::integrator::{Step, Stepped};
 use super::lanes::{Lane, Real};
@@ -12,6 +12,8 @@ use crate::synthesis::LoopGains;
 pub const FTC_STATES: usize = 10;
 /// States of a channel under a PID.
 pub const PID_STATES: usize = 6;
+/// States of a channel under a controller that measures without error.
+pub const TRUE_STATES: usize = 3;
 /// States of a channel before those of its observer.
 pub const OBSERVER: usize = 3;
 
@@ -40,6 +42,18 @@ impl<R: Real> ChannelGains<R> {
         }
     }
 
+    /// A controller that knows [int e, e, e'] and feeds it back through `feedback`.
+    pub(crate) fn true_state(feedback: [f64; 3]) -> Self {
+        let zero = R::from_f64(0.0);
+        let [k0, k1, k2] = feedback.map(R::from_f64);
+        Self {
+            feedback: [k0, k1, k2, zero, zero, zero, zero],
+            injection: [[zero; 3]; 7],
+            smoothing: [zero; 3],
+            sensor_fault_input: [zero; 2],
+        }
+    }
+
     /// What the observer starts from: ehat = y(0) - C0 r(0) and no faults.
     pub(crate) fn measured<L: Lane<Real = R>>(
         &self,
@@ -53,6 +67,13 @@ impl<R: Real> ChannelGains<R> {
     }
 }
 
+/// The estimates of int e, e and e'.
+#[inline(always)]
+pub(crate) fn error_estimate<L: Lane, const NS: usize>(state: &[L; NS]) -> [L; 3] {
+    let first = if NS == TRUE_STATES { 0 } else { OBSERVER };
+    [state[first], state[first + 1], state[first + 2]]
+}
+
 /// u_fb = K ehat, (21).
 #[inline(always)]
 pub(crate) fn feedback<L: Lane, const NS: usize>(
@@ -60,9 +81,10 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
     state: &[L; NS],
 ) -> L {
     let k = &gains.feedback;
-    let mut sum = state[OBSERVER] * L::splat(k[0]);
-    sum = state[OBSERVER + 1].mul_add(L::splat(k[1]), sum);
-    sum = state[OBSERVER + 2].mul_add(L::splat(k[2]), sum);
+    let [integral, error, rate] = error_estimate(state);
+    let mut sum = integral * L::splat(k[0]);
+    sum = error.mul_add(L::splat(k[1]), sum);
+    sum = rate.mul_add(L::splat(k[2]), sum);
     if NS == FTC_STATES {
         sum = state[OBSERVER + 3].mul_add(L::splat(k[3]), sum);
         sum = state[OBSERVER + 4].mul_add(L::splat(k[4]), sum);
@@ -83,6 +105,10 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     told: L,
     h: &Step<L::Real>,
 ) {
+    if NS == TRUE_STATES {
+        let state = *channel.at::<STAGE>();
+        return step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
+    }
     let [b1, b2] = [
         L::splat(gains.sensor_fault_input[0]),
         L::splat(gains.sensor_fault_input[1]),
@@ -104,9 +130,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
         unexplained.mul_add(b1, state[1] - state[OBSERVER + 1]),
         unexplained.mul_add(b2, state[2] - state[OBSERVER + 2]),
     ];
-    channel.take::<STAGE>(0, state[1], h);
-    channel.take::<STAGE>(1, state[2], h);
-    channel.take::<STAGE>(2, error_acceleration, h);
+    step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
     let rows = &gains.injection;
     let mut row = injected(&rows[0], &innovation, state[OBSERVER + 1]);
     channel.take::<STAGE>(OBSERVER, row, h);
@@ -129,6 +153,19 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
         row = injected(&rows[2], &innovation, told);
         channel.take::<STAGE>(OBSERVER + 2, row, h);
     }
+}
+
+/// The rows e, e' and e''.
+#[inline(always)]
+fn step_error<L: Lane, const NS: usize, const STAGE: usize>(
+    channel: &mut Stepped<L, NS>,
+    state: &[L; NS],
+    error_acceleration: L,
+    h: &Step<L::Real>,
+) {
+    channel.take::<STAGE>(0, state[1], h);
+    channel.take::<STAGE>(1, state[2], h);
+    channel.take::<STAGE>(2, error_acceleration, h);
 }
 
 /// base - L (y - yhat), one row.

@@ -6,16 +6,19 @@
 )]
 
 use super::condition::{Block, Condition, Entries, later_onsets};
-use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES};
+use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES, TRUE_STATES};
 use super::group::{Advance, Agent, Ending, Group, Setting, Show, Shown};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
-use super::plant::{Plant, ReferenceRow};
-use super::plant_uav::{Attitude, Axis, Thrust, inertia, non_inertial};
-use crate::campaign::{self, ActuationKind, Campaign, FIRST_ATTITUDE, ObserverStart, Uav};
+use super::part::parts;
+pub(crate) use super::part::{Part, PlantKind};
+use super::plant::Plant;
+use super::plant_biped::Leg;
+use super::plant_uav::{Attitude, Axis, Thrust};
+use crate::campaign::{self, Campaign, ObserverStart};
 use crate::draw::Episode;
+use crate::robot::LEG_JOINTS;
 use crate::synthesis::LoopGains;
-use std::ops::Range;
 
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
@@ -23,31 +26,22 @@ pub struct Model<R> {
     pub(crate) parts: Vec<Part<R>>,
 }
 
-/// What holds a group of channels together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PlantKind {
-    /// One axis of translation, fully actuated.
-    Axis,
-    /// The attitude, fully actuated.
-    Attitude,
-    /// All channels, with thrust along the body axis.
-    Thrust,
-}
-
-/// A group of channels and its reference table, `[half step][agent][channel][row]`.
-pub(crate) struct Part<R> {
-    pub(crate) plant: PlantKind,
-    pub(crate) channels: Range<usize>,
-    /// Rows of each channel: [`Plant::ROWS`].
-    pub(crate) rows: usize,
-    pub(crate) table: Vec<ReferenceRow<R>>,
-}
-
 /// A controller in the precision of the loop: its gains on each channel group.
 #[derive(Debug, Clone)]
 pub struct Controller<R> {
     pub(crate) gains: Vec<ChannelGains<R>>,
-    pub(crate) ftc: bool,
+    pub(crate) kind: ControllerKind,
+}
+
+/// What a controller works from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ControllerKind {
+    /// The estimates of an observer with fault states: the paper's fault-tolerant controller.
+    Ftc,
+    /// The estimates of an observer without them.
+    Pid,
+    /// The state itself. No campaign names such a controller.
+    TrueState,
 }
 
 /// How an agent fared in an episode under one controller.
@@ -95,7 +89,24 @@ impl<R: Real> Controller<R> {
         let ftc = |gains: &LoopGains| gains.states + OBSERVER == FTC_STATES;
         Self {
             gains: groups.iter().map(ChannelGains::new).collect(),
-            ftc: groups.iter().all(ftc),
+            kind: if groups.iter().all(ftc) {
+                ControllerKind::Ftc
+            } else {
+                ControllerKind::Pid
+            },
+        }
+    }
+
+    /// A controller that measures without error: u_fb = K [int e, e, e']' with the K of each channel group. It shows the
+    /// plant apart from any observer, on the CPU; no campaign names it.
+    #[must_use]
+    pub fn true_state(groups: &[[f64; 3]]) -> Self {
+        Self {
+            gains: groups
+                .iter()
+                .map(|&feedback| ChannelGains::true_state(feedback))
+                .collect(),
+            kind: ControllerKind::TrueState,
         }
     }
 }
@@ -104,42 +115,10 @@ impl<R: Real> Model<R> {
     /// Tabulates the references of a campaign.
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {
-        let actuation = campaign.agent.actuation();
-        let ends: &[usize] = match actuation {
-            ActuationKind::Full => &[0, 1, 2, 3, 6],
-            _ => &[0, 6],
-        };
-        let parts = ends
-            .windows(2)
-            .map(|ends| ends[0]..ends[1])
-            .map(|channels| Part {
-                plant: match (actuation, channels.start) {
-                    (ActuationKind::Thrust, _) => PlantKind::Thrust,
-                    (ActuationKind::Full, FIRST_ATTITUDE) => PlantKind::Attitude,
-                    _ => PlantKind::Axis,
-                },
-                channels,
-                rows: 1,
-                table: Vec::new(),
-            })
-            .collect();
-        let mut model = Self {
+        Self {
             campaign: campaign.clone(),
-            parts,
-        };
-        for half_step in 0..=2 * campaign.time.steps {
-            let t_s = f64::from(half_step) * campaign.time.step_s / 2.0;
-            for agent in 0..campaign.team {
-                let campaign::Agent::Uav(uav) = &campaign.agent else {
-                    continue;
-                };
-                let rows = reference_rows(campaign, uav, agent, t_s);
-                for part in &mut model.parts {
-                    part.table.extend(&rows[part.channels.clone()]);
-                }
-            }
+            parts: parts(campaign),
         }
-        model
     }
 
     /// Flies at most `L::WIDTH` episodes under a controller: `[episode][agent]`.
@@ -187,37 +166,14 @@ impl<R: Real> Model<R> {
             snapshots: Vec::new(),
         };
         for part in &self.parts {
-            if controller.ftc {
-                flight.part::<L, FTC_STATES>(part);
-            } else {
-                flight.part::<L, PID_STATES>(part);
+            match controller.kind {
+                ControllerKind::Ftc => flight.part::<L, FTC_STATES>(part),
+                ControllerKind::Pid => flight.part::<L, PID_STATES>(part),
+                ControllerKind::TrueState => flight.part::<L, TRUE_STATES>(part),
             }
         }
         (flight.outcomes, flight.snapshots)
     }
-}
-
-/// The reference rows of an agent's channels at one instant. Under thrust, roll and pitch have none: they follow from the
-/// force, and the feedforward of the attitude is worked out in the loop.
-fn reference_rows<R: Real>(
-    campaign: &Campaign,
-    uav: &Uav,
-    agent: usize,
-    t_s: f64,
-) -> [ReferenceRow<R>; 6] {
-    let points = campaign.reference.at(agent, t_s);
-    let inertia = inertia(uav);
-    let non_inertial = non_inertial(uav, std::array::from_fn(|c| points[c].rate));
-    std::array::from_fn(|c| {
-        let point = points[c];
-        [
-            point.value,
-            point.rate,
-            point.acceleration,
-            inertia[c] * point.acceleration + non_inertial[c],
-        ]
-        .map(R::from_f64)
-    })
 }
 
 /// A block of episodes under one controller.
@@ -233,15 +189,21 @@ struct Flight<'a, R> {
 
 impl<R: Real> Flight<'_, R> {
     fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Part<R>) {
-        let campaign::Agent::Uav(uav) = &self.model.campaign.agent else {
-            return;
-        };
-        match part.plant {
-            PlantKind::Axis => {
-                self.group::<L, _, 1, NS, 0>(Axis::new(uav, part.channels.start), part);
+        let (campaign, first) = (&self.model.campaign, part.channels.start);
+        match &campaign.agent {
+            campaign::Agent::Uav(uav) => match part.plant {
+                PlantKind::Axis => self.group::<L, _, 1, NS, 0>(Axis::new(uav, first), part),
+                PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
+                _ => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
+            },
+            campaign::Agent::Biped(biped) => {
+                let (robot, side) = (&biped.robot, first / LEG_JOINTS);
+                if campaign.is_limited() {
+                    self.group::<L, _, 6, NS, 0>(Leg::<R, true>::new(robot, side), part);
+                } else {
+                    self.group::<L, _, 6, NS, 0>(Leg::<R, false>::new(robot, side), part);
+                }
             }
-            PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
-            PlantKind::Thrust => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
         }
     }
 
@@ -256,11 +218,14 @@ impl<R: Real> Flight<'_, R> {
         let campaign = &self.model.campaign;
         let first = part.channels.start;
         let verdict = &campaign.verdict;
+        let groups = campaign.channel_groups();
+        let group_of = |channel: usize| {
+            let is_in = |group: &campaign::ChannelGroup| group.channels.contains(&channel);
+            groups.iter().position(is_in).unwrap_or_default()
+        };
         let setting = Setting {
             plant,
-            gains: std::array::from_fn(|c| {
-                self.controller.gains[usize::from(first + c >= FIRST_ATTITUDE)]
-            }),
+            gains: std::array::from_fn(|c| self.controller.gains[group_of(first + c)]),
             limits: std::array::from_fn(|c| {
                 Limits::new(
                     verdict.max_error[first + c],
@@ -329,7 +294,7 @@ impl<R: Real> Flight<'_, R> {
             let [integral, error, rate] = condition.initial[c];
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
-            if campaign.initial.observer == ObserverStart::Measured {
+            if NS > OBSERVER && campaign.initial.observer == ObserverStart::Measured {
                 state[OBSERVER..OBSERVER + 3].copy_from_slice(&gains[c].measured(
                     integral,
                     error,

@@ -9,7 +9,7 @@
 )]
 
 use super::condition::Condition;
-use super::controller::{ChannelGains, OBSERVER, fault_estimates, feedback, step_channel};
+use super::controller::{ChannelGains, error_estimate, fault_estimates, feedback, step_channel};
 use super::integrator::{Step, Stepped};
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
 use super::metric::{ChannelOutcome, Limits, Metrics, Sample};
@@ -371,7 +371,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                     x: first_lane(position[c]),
                     e: first_lane(state[1]),
                     e_rate: first_lane(state[2]),
-                    e_hat: first_lane(state[OBSERVER + 1]),
+                    e_hat: first_lane(error_estimate(state)[1]),
                     f1: first_lane(f1),
                     f1_hat: first_lane(f1_hat),
                     f2: first_lane(agent.signals.sensor_fault[c]),

@@ -219,6 +219,7 @@ impl Lane for f64 {
     fn ln(self) -> Self {
         f64::ln(self)
     }
+    #[inline(never)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         kernel.run()
     }
@@ -327,6 +328,7 @@ impl Lane for f32 {
             f32::from_bits((shifted & math::MANTISSA_BITS).wrapping_add(math::SQRT_HALF_BITS));
         math::ln_split(mantissa, exponent)
     }
+    #[inline(never)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         kernel.run()
     }

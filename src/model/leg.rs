@@ -17,7 +17,7 @@ mod frames;
 mod link;
 mod words;
 
-use super::lanes::Lane;
+use super::lanes::{Kernel, Lane};
 use link::{
     carried, composite, damped, first_moment, first_motion, joined, momentum, next_motion,
     second_motion, tip, turn, wrench,
@@ -66,7 +66,7 @@ impl From<&crate::robot::Joint> for LegJoint {
 }
 
 /// A leg in the precision of the loop.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct LegModel<R> {
     pub(crate) joints: [Joint<R>; LEG_JOINTS],
     /// Acceleration of the resting pelvis, against gravity: across and along the first axis.
@@ -139,14 +139,41 @@ pub fn forward_dynamics<L: Lane>(
     rate: &[L; LEG_JOINTS],
     torque: &[L; LEG_JOINTS],
 ) -> [L; LEG_JOINTS] {
-    match model.build {
-        Build::PitchFirst => {
-            accelerations::<L>(const { Build::PitchFirst.twists() }, model, q, rate, torque)
+    L::dispatch(ForwardDynamics::<L> {
+        model,
+        q,
+        rate,
+        torque,
+    })
+}
+
+/// [`forward_dynamics`] as a kernel, so that it is compiled once per lane type and not into every stage of every loop.
+struct ForwardDynamics<'a, L: Lane> {
+    model: &'a LegModel<L::Real>,
+    q: &'a [L; LEG_JOINTS],
+    rate: &'a [L; LEG_JOINTS],
+    torque: &'a [L; LEG_JOINTS],
+}
+
+impl<L: Lane> Kernel for ForwardDynamics<'_, L> {
+    type Output = [L; LEG_JOINTS];
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self {
+            model,
+            q,
+            rate,
+            torque,
+        } = self;
+        match model.build {
+            Build::PitchFirst => {
+                accelerations::<L>(const { Build::PitchFirst.twists() }, model, q, rate, torque)
+            }
+            Build::PitchLast => {
+                accelerations::<L>(const { Build::PitchLast.twists() }, model, q, rate, torque)
+            }
+            Build::Any => accelerations::<L>(const { Build::Any.twists() }, model, q, rate, torque),
         }
-        Build::PitchLast => {
-            accelerations::<L>(const { Build::PitchLast.twists() }, model, q, rate, torque)
-        }
-        Build::Any => accelerations::<L>(const { Build::Any.twists() }, model, q, rate, torque),
     }
 }
 

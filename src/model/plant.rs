@@ -20,7 +20,6 @@ pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
     /// c + d1 of (12).
     pub(crate) force: [L; NC],
     /// Scale of the ground's reaction, where the table has one.
-    #[expect(dead_code, reason = "no plant so far stands on the ground")]
     pub(crate) ground: &'a [L; NC],
     /// What an actuator fault leaves of the command.
     pub(crate) command_gain: &'a [L; NC],

@@ -61,7 +61,7 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     pub(crate) sines: Vec<[Sine<L>; NC]>,
     pub(crate) squares: Vec<[Square<L>; NC]>,
     pub(crate) constant: [L; NC],
-    /// Scale of the ground's reaction.
+    /// Scale of the ground's reaction: the sum of all that the campaign names.
     pub(crate) ground: [L; NC],
     pub(crate) losses: Vec<[Switch<L>; NC]>,
     pub(crate) command_biases: Vec<[Switch<L>; NC]>,

@@ -212,6 +212,7 @@ macro_rules! lane_block {
                 }
             }
             fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+                #[inline(never)]
                 #[target_feature(enable = $features)]
                 fn with_features<K: Kernel>(kernel: K) -> K::Output {
                     kernel.run()

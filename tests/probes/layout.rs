@@ -11,7 +11,7 @@ use crate::backend::gpu::words::{
 use crate::campaign::{Campaign, FIRST_ATTITUDE};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::controller::{FTC_STATES, OBSERVER};
-use crate::model::episode::{Controller, Model, PlantKind};
+use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
 use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
 use crate::model::math;
 use crate::model::rng::{self, Stream};
@@ -129,7 +129,7 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
     let world = World::<_, 6, 10, 4>::new(shapes::probed()[5].clone(), shapes::thrust());
     let controller = Controller {
         gains: vec![world.gains[0], world.gains[5]],
-        ftc: true,
+        kind: ControllerKind::Ftc,
     };
     let mut plants = 0;
     for name in ["uav-paper", "uav-physical"] {

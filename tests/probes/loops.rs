@@ -272,6 +272,7 @@ pub(super) fn plant<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             workgroupBarrier();
             answer_response(thrust_respond(stage, inputs));"
         }
+        PlantKind::Leg => "",
     };
     let body = format!(
         "load();

@@ -29,7 +29,7 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
     let channels = match plant {
         PlantKind::Axis => 1,
         PlantKind::Attitude => 3,
-        PlantKind::Thrust => 6,
+        PlantKind::Thrust | PlantKind::Leg => 6,
     };
     Shape {
         plant,

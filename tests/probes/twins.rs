@@ -160,6 +160,10 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "a row of the table is one value",
     ),
     (
+        &["true_state", "error_estimate", "step_error"],
+        "a controller without an observer flies on the CPU alone",
+    ),
+    (
         &[
             "at_start",
             "outcomes",

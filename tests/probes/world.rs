@@ -121,7 +121,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         let first = match shape.plant {
             PlantKind::Axis => 2,
             PlantKind::Attitude => 3,
-            PlantKind::Thrust => 0,
+            PlantKind::Thrust | PlantKind::Leg => 0,
         };
         // A span that crosses a flush, a settle step within it, and the table's window ahead of it.
         let span = Span {

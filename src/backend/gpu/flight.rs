@@ -9,7 +9,7 @@ use crate::backend::Flown;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
 use crate::model::Shown;
-use crate::model::episode::{AgentOutcome, Controller, Model};
+use crate::model::episode::{AgentOutcome, Controller, ControllerKind, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -128,7 +128,7 @@ impl<'g> GpuFlyer<'g> {
         let mut groups: Vec<Group> = Vec::new();
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
-                let shape = shape(gpu, campaign, part, gains.ftc)?;
+                let shape = shape(gpu, campaign, part, gains.kind == ControllerKind::Ftc)?;
                 // The axes mostly share their shaders, and the PIDs do.
                 let known = groups.iter().find(|group| group.shape == shape);
                 let pipelines = match known {

@@ -85,7 +85,7 @@ pub(super) fn shape(
     let (counts, noise_entries) = match part.plant {
         PlantKind::Axis => words::signals::<1>(campaign, first, &episode),
         PlantKind::Attitude => words::signals::<3>(campaign, first, &episode),
-        PlantKind::Thrust => words::signals::<6>(campaign, first, &episode),
+        PlantKind::Thrust | PlantKind::Leg => words::signals::<6>(campaign, first, &episode),
     };
     let limits = gpu.limits();
     let mut shape = Shape {

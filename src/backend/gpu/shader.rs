@@ -61,7 +61,7 @@ impl Shape {
     pub(crate) fn states(&self) -> usize {
         match self.plant {
             PlantKind::Thrust => FTC_STATES + FILTER_STATES,
-            PlantKind::Axis | PlantKind::Attitude => FTC_STATES,
+            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => FTC_STATES,
         }
     }
 
@@ -69,7 +69,7 @@ impl Shape {
     pub(crate) fn kinds(&self) -> usize {
         match self.plant {
             PlantKind::Thrust => 2,
-            PlantKind::Axis | PlantKind::Attitude => 1,
+            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 1,
         }
     }
 
@@ -78,7 +78,7 @@ impl Shape {
         match self.plant {
             PlantKind::Axis => 1,
             PlantKind::Attitude => 2,
-            PlantKind::Thrust => 4,
+            PlantKind::Thrust | PlantKind::Leg => 4,
         }
     }
 

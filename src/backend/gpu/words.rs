@@ -245,7 +245,7 @@ pub(crate) fn setting(
         uav: match part.plant {
             PlantKind::Axis => Axis::new(uav, part.channels.start).into(),
             PlantKind::Attitude => Attitude::new(uav).into(),
-            PlantKind::Thrust => Thrust::new(uav).into(),
+            PlantKind::Thrust | PlantKind::Leg => Thrust::new(uav).into(),
         },
     };
     let mut bytes = bytemuck::bytes_of(&head).to_vec();
@@ -260,7 +260,7 @@ pub(crate) fn setting(
         ]));
     }
     let gains = match part.plant {
-        PlantKind::Axis => &controller.gains[..1],
+        PlantKind::Axis | PlantKind::Leg => &controller.gains[..1],
         PlantKind::Attitude => &controller.gains[1..],
         PlantKind::Thrust => &controller.gains,
     };
@@ -296,7 +296,7 @@ pub(crate) fn draws(
     match shape.plant {
         PlantKind::Axis => draws_of::<1>(campaign, shape, first, episodes),
         PlantKind::Attitude => draws_of::<3>(campaign, shape, first, episodes),
-        PlantKind::Thrust => draws_of::<6>(campaign, shape, first, episodes),
+        PlantKind::Thrust | PlantKind::Leg => draws_of::<6>(campaign, shape, first, episodes),
     }
 }
 
