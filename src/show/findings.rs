@@ -11,6 +11,9 @@ use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
 use urts_mc::synthesis::ChannelRole;
 
+/// Channels that are shown one by one.
+const MOST_CHANNELS: usize = 6;
+
 /// The findings of a run at a glance.
 pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
     let mut text = String::new();
@@ -129,16 +132,32 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             &mut text,
             &format!("  {} against {}", comparison.a, comparison.b),
         );
-        for ratio in &comparison.ratios {
+        let (shown, left_out) = worth_showing(&comparison.ratios);
+        for ratio in shown {
             line(
                 &mut text,
                 &format!("    {:<width$}  {}", ratio.name, ratio_text(ratio)),
+            );
+        }
+        if left_out > 0 {
+            let rest = "between these two; comparison.csv has them all";
+            line(
+                &mut text,
+                &format!("    {left_out} more channels lie {rest}"),
             );
         }
         line(
             &mut text,
             &format!("    {:<width$}  {}", "failures", failures_text(comparison)),
         );
+        let diverged = comparison.ratios.first().map(|ratio| ratio.diverged);
+        let diverged: u64 = diverged.iter().flatten().sum();
+        if diverged > 0 {
+            line(
+                &mut text,
+                &format!("    a diverged episode counts as infinitely bad: {diverged} pairs"),
+            );
+        }
     }
     let times = manifest.times;
     line(
@@ -255,23 +274,33 @@ pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
     unmet.collect::<Vec<_>>().join("\n")
 }
 
+/// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and how many
+/// are left out.
+fn worth_showing(ratios: &[Ratio]) -> (Vec<&Ratio>, usize) {
+    let (mut shown, mut channels): (Vec<&Ratio>, Vec<&Ratio>) =
+        ratios.iter().partition(|ratio| ratio.scope == "group");
+    let mut left_out = 0;
+    if channels.len() > MOST_CHANNELS {
+        let value = |ratio: &Ratio| ratio.log_ratio.map_or(f64::NAN, |ratio| ratio.value);
+        channels.sort_by(|a, b| value(a).total_cmp(&value(b)));
+        left_out = channels.len() - 2;
+        channels = vec![channels[0], channels[left_out + 1]];
+    }
+    shown.extend(channels);
+    (shown, left_out)
+}
+
 fn ratio_text(ratio: &Ratio) -> String {
     let wins = ratio.win_rate.map_or(String::new(), |rate| {
         format!("  wins {:>5.1} %", 100.0 * rate.value)
     });
-    let diverged: u64 = ratio.diverged.iter().sum();
-    let note = if diverged > 0 {
-        format!("  (a diverged episode counts as infinitely bad: {diverged} pairs)")
-    } else {
-        String::new()
-    };
     match ratio.log_ratio {
         Some(Estimate {
             value,
             interval: Interval { lower, upper },
         }) => {
             let interval = format!("[{}, {}]", times(lower), times(upper));
-            format!("{:>8} {interval:<19}{wins}{note}", times(value))
+            format!("{:>8} {interval:<19}{wins}", times(value))
         }
         None => "no episodes".to_string(),
     }
