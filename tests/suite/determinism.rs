@@ -108,6 +108,11 @@ magnitude = 1.0
     )
 }
 
+/// Whether two results are the same to the last digit; what is no number is the same as itself.
+fn same<T: std::fmt::Debug + ?Sized>(a: &T, b: &T) -> bool {
+    format!("{a:?}") == format!("{b:?}")
+}
+
 fn fly(
     campaign: &Campaign,
     simd: Option<Simd>,
@@ -210,7 +215,7 @@ fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
         short.episodes = 10;
         let all = fly(&long, None, 2, Precision::F32);
         assert_eq!(all.len(), 37);
-        assert!(all[..10] == fly(&short, None, 2, Precision::F32));
+        assert!(same(&all[..10], &fly(&short, None, 2, Precision::F32)[..]));
         assert!(all[0].outcomes != all[1].outcomes, "episodes differ");
     }
 }
@@ -221,7 +226,7 @@ fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
         let gains = GainSet::obtain(&campaign).unwrap();
         let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
         let all = cpu.fly(0..37, &|_| ());
-        assert!(cpu.fly(5..23, &|_| ()) == all[5..23]);
+        assert!(same(&cpu.fly(5..23, &|_| ())[..], &all[5..23]));
     }
 }
 
@@ -241,7 +246,7 @@ fn same_draws(campaign: &Campaign) {
         assert!(a.episode == b.episode);
         let mut outcomes = b.outcomes.clone();
         outcomes.reverse();
-        assert!(a.outcomes == outcomes);
+        assert!(same(&a.outcomes, &outcomes));
     }
 }
 
@@ -271,10 +276,13 @@ fn same_metrics(campaign: &Campaign) {
                 .position(|name| name == controller)
                 .unwrap();
             assert!(
-                replayed.outcomes == flown[episode as usize].outcomes[index],
+                same(&replayed.outcomes, &flown[episode as usize].outcomes[index]),
                 "{precision:?} {episode} {controller}"
             );
             assert_eq!(replayed.snapshots.len(), 451);
+            if replayed.outcomes[1].diverged {
+                continue;
+            }
             // The trajectory is the one that the metrics are of.
             let settle = (campaign.time.settle_step / 5) as usize;
             let largest = replayed.snapshots[settle..450]

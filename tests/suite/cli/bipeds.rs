@@ -49,7 +49,7 @@ fn a_walk_that_cannot_be_is_refused_with_what_is_in_its_way() {
         r#"
 kind = "walk"     => kind = "waypoints"  :: reference.kind (line 19) = "waypoints" ~ a UAV's; use "walk"
 kind = "walk"     => kind = "sinusoid"   :: reference.points_m (line 20) ~ "sinusoid" does not have it
-points_m = [[0.0, 0.0], [1.0, 0.0]] => :: reference.points_m (line 18) = absent ~ add it
+points_m = [[0.0, 0.0], [1.0, 0.0]] =>   :: reference.points_m (line 18) = absent ~ add it
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] :: reference.points_m[0] (line 20) = [0.0, 0.0, 0.0]: a point of this kind has 2 coordinates
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0], [0.1, 0.0]] :: reference.points_m (line 20) ~ shorter than one step of 0.2 m; move its end or shorten the step
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0]] :: reference.points_m (line 20) = [[0.0, 0.0]] ~ needs at least 2; add
