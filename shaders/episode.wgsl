@@ -6,10 +6,10 @@ struct Setting {
     settle_step: u32,
     first_channel: u32,
     h: Step,
-    uav: Uav,
+    plant: Plant,
     // max_error and settled_error of each channel.
     limits: array<vec4<f32>, NC>,
-    // On the channels of the group; under thrust on those of position, then of attitude.
+    // Of the kinds of channels in the group: under thrust those of position, then of attitude.
     gains: array<ChannelGains, KINDS>,
 }
 
@@ -29,7 +29,7 @@ struct Span {
 @group(0) @binding(2) var<storage, read> draws: array<u32>;
 // The state between two spans, `[block of episodes][word][channel][agent][episode]`.
 @group(0) @binding(3) var<storage, read_write> state: array<u32>;
-// Reference at half steps, `[half step][agent][channel]`: r, r', r'', feedforward.
+// Reference at half steps, `[half step][agent][channel][row]`.
 @group(0) @binding(4) var<storage, read> table: array<vec4<f32>>;
 // Outcomes, ordered as the state.
 @group(0) @binding(5) var<storage, read_write> output: array<u32>;
@@ -67,10 +67,7 @@ fn identify(local: u32, workgroup: u32) {
     own.first_drawn = workgroup * (DRAWN_WORDS * WORKGROUP) + local;
     own.first_stored = workgroup * (STORED_WORDS * WORKGROUP) + local;
     own.limits = setting.limits[own.channel].xy;
-    if PLANT != AXIS {
-        let i = (setting.first_channel + own.channel) % 3u;
-        own.inertia = vec3(setting.uav.inertia[i], setting.uav.inverse_inertia[i], setting.uav.gyro[i]);
-    }
+    own.plant = channel_plant();
     own.inverse_inertia = drawn_number(INVERSE_INERTIA);
     own.kappa = drawn_number(KAPPA);
     own.first_fault = drawn(FIRST_FAULT);
@@ -101,7 +98,7 @@ fn resume() {
     stepped_start[7] = stored_number(CHANNEL + 7u);
     stepped_start[8] = stored_number(CHANNEL + 8u);
     stepped_start[9] = stored_number(CHANNEL + 9u);
-    if PLANT == THRUST {
+    if EXTRA_STATES > 0u {
         stepped_start[EXTRA] = stored_number(CHANNEL + EXTRA);
         stepped_start[EXTRA + 1u] = stored_number(CHANNEL + EXTRA + 1u);
     }
@@ -132,7 +129,7 @@ fn keep() {
     store_number(CHANNEL + 7u, stepped_start[7]);
     store_number(CHANNEL + 8u, stepped_start[8]);
     store_number(CHANNEL + 9u, stepped_start[9]);
-    if PLANT == THRUST {
+    if EXTRA_STATES > 0u {
         store_number(CHANNEL + EXTRA, stepped_start[EXTRA]);
         store_number(CHANNEL + EXTRA + 1u, stepped_start[EXTRA + 1u]);
     }

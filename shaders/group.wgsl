@@ -15,8 +15,8 @@ struct Own {
     first_stored: u32,
     // max_error and settled_error.
     limits: vec2<f32>,
-    // Modelled inertia, its reciprocal, and (J_k - J_j) / J_i, of a channel of attitude.
-    inertia: vec3<f32>,
+    // What the channel takes of the constants of its plant.
+    plant: ChannelPlant,
     // 1 / true inertia.
     inverse_inertia: f32,
     kappa: f32,
@@ -31,8 +31,7 @@ struct Own {
 var<private> own: Own;
 
 // What a channel shows to others, in two halves that the stages use in turn: one barrier per stage is enough, since who
-// writes to a half has passed the barrier after which the others had read it. A channel of translation under thrust has
-// [x, bias, demand, gain], every other [x, x', r, r'], as far as SHARED goes.
+// writes to a half has passed the barrier after which the others had read it.
 var<workgroup> published: array<f32, 2u * SHARED * WORKGROUP>;
 
 fn slot(stage: u32, what: u32, channel: u32, agent: u32) -> u32 {
@@ -48,44 +47,22 @@ fn publish(stage: u32, what: u32, value: f32) {
     published[slot(stage, what, own.channel, own.agent)] = value;
 }
 
-// The answer of the plant at the state of a stage; `row` is the channel's reference.
-fn agent_respond(stage: u32, row: vec4<f32>) -> Response {
-    let r = reference(stage, row);
+// The answer of the plant at the state of a stage.
+fn agent_respond(stage: u32, at: Reference) -> Response {
+    let r = reference(stage, at.row);
     let position = r.x + stepped_at(stage, 1u);
     let velocity = r.y + stepped_at(stage, 2u);
-    let wanted = feedback(stage);
+    var inputs = Inputs(at, feedback(stage), position, velocity, disturbance);
     if COUPLED || NC > 1u {
-        publish(stage, POSITION, position);
-        if PLANT == ATTITUDE {
-            publish(stage, VELOCITY, velocity);
-        }
-        if PLANT == THRUST {
-            if own.channel < 3u {
-                publish(stage, COMMAND_BIAS, command_bias);
-                publish(stage, DEMAND, fma(wanted, setting.uav.mass, row.w));
-                publish(stage, COMMAND_GAIN, command_gain);
-            } else {
-                publish(stage, VELOCITY, velocity);
-                publish(stage, REFERENCE, r.x);
-                publish(stage, REFERENCE_RATE, r.y);
-            }
-        }
+        publish_channel(stage, inputs);
         workgroupBarrier();
     }
-    var force = disturbance;
     if COUPLED {
         // (10): c = kappa x o sum of the other agents' x.
         let others = team_sum(stage) - position;
-        force = fma(others * own.kappa, position, force);
+        inputs.force = fma(others * own.kappa, position, disturbance);
     }
-    let inputs = Inputs(row, wanted, position, velocity, force);
-    if PLANT == AXIS {
-        return axis_respond(inputs);
-    }
-    if PLANT == ATTITUDE {
-        return attitude_respond(stage, inputs);
-    }
-    return thrust_respond(stage, inputs);
+    return respond(stage, inputs);
 }
 
 // The sum of x over the team, which the coupling needs.
@@ -127,32 +104,33 @@ fn group_hold(step: u32) {
     own.next_change = min(next_onset(step), select(NEVER, own.first_fault, own.first_fault > step));
 }
 
-fn group_stage(stage: u32, row: vec4<f32>, settled: bool, step: u32) {
-    let response = agent_respond(stage, row);
+fn group_stage(stage: u32, at: Reference, settled: bool, step: u32) {
+    let response = agent_respond(stage, at);
     if stage == 0u {
         agent_observe(response, settled, step);
     }
     step_channel(stage, response.error_acceleration, sensor_fault, response.told);
-    if PLANT == THRUST {
+    if EXTRA_STATES > 0u {
         stepped_take(stage, EXTRA, response.extra_rate.x);
         stepped_take(stage, EXTRA + 1u, response.extra_rate.y);
     }
 }
 
-// The channel's row of the reference table, `half` half steps after the span's first step.
-fn reference_row(half: u32) -> vec4<f32> {
-    return table[((span.table_first + half) * TEAM + own.agent) * NC + own.channel];
+// The channel's reference `half` half steps after the span's first step.
+fn reference_at(half: u32) -> Reference {
+    let place = (((span.table_first + half) * TEAM + own.agent) * NC + own.channel) * ROWS;
+    return Reference(table[place], place);
 }
 
 // Integrates from the span's first step up to its end.
 fn group_advance() {
-    var end = reference_row(0u);
+    var end = reference_at(0u);
     for (var step = span.first; step < span.until; step++) {
         group_begin_step(step);
         let start = end;
         let half = 2u * (step - span.first);
-        let middle = reference_row(half + 1u);
-        end = reference_row(half + 2u);
+        let middle = reference_at(half + 1u);
+        end = reference_at(half + 2u);
         group_stage(0u, start, step >= setting.settle_step, step);
         signals_evaluate(true);
         group_stage(1u, middle, false, step);
@@ -167,8 +145,8 @@ fn group_advance() {
 
 // What the channel shows at the span's first step.
 fn group_show() -> array<f32, SHOWN> {
-    let response = agent_respond(0u, reference_row(0u));
-    let position = reference(0u, reference_row(0u)).x + stepped_start[1];
+    let response = agent_respond(0u, reference_at(0u));
+    let position = reference(0u, reference_at(0u).row).x + stepped_start[1];
     let estimates = fault_estimates();
     let f1 = response.error_acceleration - response.told;
     return array(

@@ -21,31 +21,22 @@ struct Uav {
     unused_2: f32,
 }
 
-// What acts on the channel at one instant.
-struct Inputs {
-    // r, r', r'' and the feedforward M r'' + H(r, r') of (9).
-    reference: vec4<f32>,
-    // u_fb of (21).
-    feedback: f32,
-    // x and x'.
-    position: f32,
-    velocity: f32,
-    // c + d1 of (12).
-    force: f32,
+alias Plant = Uav;
+
+// What a channel of attitude takes of them, as own.plant.
+struct ChannelPlant {
+    // Modelled inertia, its reciprocal, and (J_k - J_j) / J_i.
+    inertia: f32,
+    inverse_inertia: f32,
+    gyro: f32,
 }
 
-// How the channel answers.
-struct Response {
-    // x'' - r''.
-    error_acceleration: f32,
-    // The feedback that was really commanded, after filter and limits, before any fault.
-    told: f32,
-    // The command u of (9) after limits and faults.
-    command: f32,
-    // By how much the limits cut the command.
-    excess: f32,
-    // Derivative of the command filter's angle and rate.
-    extra_rate: vec2<f32>,
+fn channel_plant() -> ChannelPlant {
+    if PLANT == AXIS {
+        return ChannelPlant(0.0, 0.0, 0.0);
+    }
+    let i = (setting.first_channel + own.channel) % 3u;
+    return ChannelPlant(setting.plant.inertia[i], setting.plant.inverse_inertia[i], setting.plant.gyro[i]);
 }
 
 // The reference of the channel and its rate: (r, r'). Under thrust, roll and pitch follow the command filter.
@@ -56,11 +47,42 @@ fn reference(stage: u32, row: vec4<f32>) -> vec2<f32> {
     return row.xy;
 }
 
+// Shows the other channels of the group what they need of this one. Under thrust, a channel of translation shows
+// [x, bias, demand, gain].
+fn publish_channel(stage: u32, inputs: Inputs) {
+    publish(stage, POSITION, inputs.position);
+    if PLANT == ATTITUDE {
+        publish(stage, VELOCITY, inputs.velocity);
+    }
+    if PLANT == THRUST {
+        if own.channel < 3u {
+            publish(stage, COMMAND_BIAS, command_bias);
+            publish(stage, DEMAND, fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w));
+            publish(stage, COMMAND_GAIN, command_gain);
+        } else {
+            let r = reference(stage, inputs.reference.row);
+            publish(stage, VELOCITY, inputs.velocity);
+            publish(stage, REFERENCE, r.x);
+            publish(stage, REFERENCE_RATE, r.y);
+        }
+    }
+}
+
+fn respond(stage: u32, inputs: Inputs) -> Response {
+    if PLANT == AXIS {
+        return axis_respond(inputs);
+    }
+    if PLANT == ATTITUDE {
+        return attitude_respond(stage, inputs);
+    }
+    return thrust_respond(stage, inputs);
+}
+
 fn axis_respond(inputs: Inputs) -> Response {
-    let demanded = fma(inputs.feedback, setting.uav.mass, inputs.reference.w);
+    let demanded = fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w);
     let command = fma(demanded, command_gain, command_bias);
-    let force = fma(inputs.velocity, -setting.uav.drag, command + inputs.force);
-    let offset = inputs.reference.z + setting.uav.gravity;
+    let force = fma(inputs.velocity, -setting.plant.drag, command + inputs.force);
+    let offset = inputs.reference.row.z + setting.plant.gravity;
     let error_acceleration = fma(force, own.inverse_inertia, -offset);
     return Response(error_acceleration, inputs.feedback, command, 0.0, vec2(0.0));
 }
@@ -68,17 +90,17 @@ fn axis_respond(inputs: Inputs) -> Response {
 // Theta'' under a torque per true inertia, (3); the attitude begins with channel `first` of the group.
 fn attitude_acceleration(stage: u32, first: u32, torque: f32, rate: f32) -> f32 {
     let i = own.channel - first;
-    let net = fma(rate, -setting.uav.angular_drag, torque);
+    let net = fma(rate, -setting.plant.angular_drag, torque);
     let gyroscopic = seen(stage, VELOCITY, first + (i + 1u) % 3u) * seen(stage, VELOCITY, first + (i + 2u) % 3u);
-    return fma(gyroscopic, -own.inertia.z, net * own.inverse_inertia);
+    return fma(gyroscopic, -own.plant.gyro, net * own.inverse_inertia);
 }
 
 fn attitude_respond(stage: u32, inputs: Inputs) -> Response {
-    let demanded = fma(inputs.feedback, own.inertia.x, inputs.reference.w);
+    let demanded = fma(inputs.feedback, own.plant.inertia, inputs.reference.row.w);
     let command = fma(demanded, command_gain, command_bias);
     let torque = command + inputs.force;
     let acceleration = attitude_acceleration(stage, 0u, torque, inputs.velocity);
-    return Response(acceleration - inputs.reference.z, inputs.feedback, command, 0.0, vec2(0.0));
+    return Response(acceleration - inputs.reference.row.z, inputs.feedback, command, 0.0, vec2(0.0));
 }
 
 // R(Theta) [0 0 1]', (3).
@@ -93,10 +115,6 @@ fn body_axis(roll: f32, pitch: f32, yaw_sin_cos: vec2<f32>) -> vec3<f32> {
         fma(sin_yaw, forward, -(cos_yaw * roll_sin_cos.x)),
         pitch_sin_cos.y * roll_sin_cos.y,
     );
-}
-
-fn clamp(value: f32, low: f32, high: f32) -> f32 {
-    return lane_min(lane_max(value, low), high);
 }
 
 fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
@@ -115,17 +133,17 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
     let upright = sqrt(fma(ahead, ahead, fz * fz));
     let roll_wanted = -atan2(aside, upright);
     let pitch_wanted = atan2(ahead, fz);
-    let tilt = setting.uav.max_tilt;
+    let tilt = setting.plant.max_tilt;
     let roll_command = clamp(roll_wanted, -tilt, tilt);
     let pitch_command = clamp(pitch_wanted, -tilt, tilt);
 
     if own.channel < 3u {
         // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
         let thrust_wanted = sqrt(fma(fx, fx, fma(fy, fy, fz * fz)));
-        let thrust = clamp(thrust_wanted, 0.0, setting.uav.max_thrust);
+        let thrust = clamp(thrust_wanted, 0.0, setting.plant.max_thrust);
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
         let excess = vec3(pitch_wanted - pitch_command, roll_wanted - roll_command, thrust_wanted - thrust);
-        let told = fma(thrust, commanded_axis[own.channel], -inputs.reference.w) * setting.uav.inverse_mass;
+        let told = fma(thrust, commanded_axis[own.channel], -inputs.reference.row.w) * setting.plant.inverse_mass;
         let command = fma(seen(stage, DEMAND, own.channel), command_gain, command_bias);
 
         // What the faults leave of the thrust acts along the true body axis.
@@ -133,16 +151,16 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
         let true_yaw = seen(stage, POSITION, 5u);
         let true_axis = body_axis(seen(stage, POSITION, 3u), seen(stage, POSITION, 4u), sin_cos(true_yaw));
         var net = fma(applied, true_axis[own.channel], inputs.force);
-        net = fma(inputs.velocity, -setting.uav.drag, net);
-        let gravity = select(0.0, setting.uav.gravity, own.channel == 2u);
-        let offset = inputs.reference.z + gravity;
+        net = fma(inputs.velocity, -setting.plant.drag, net);
+        let gravity = select(0.0, setting.plant.gravity, own.channel == 2u);
+        let offset = inputs.reference.row.z + gravity;
         let error_acceleration = fma(net, own.inverse_inertia, -offset);
         return Response(error_acceleration, told, command, excess[own.channel], vec2(0.0));
     }
 
     let i = own.channel - 3u;
     // Critically damped command filter: q'' = w^2 (command - q) - 2 w q'.
-    let w = setting.uav.filter_rad_s;
+    let w = setting.plant.filter_rad_s;
     let roll_rate = seen(stage, REFERENCE_RATE, 3u);
     let pitch_rate = seen(stage, REFERENCE_RATE, 4u);
     let roll_acceleration = (w * (roll_command - roll) - (roll_rate + roll_rate)) * w;
@@ -150,14 +168,14 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
 
     // Torques: demanded along the filtered attitude, then limited.
     let rates = vec3(roll_rate, pitch_rate, seen(stage, REFERENCE_RATE, 5u));
-    let accelerations = vec3(roll_acceleration, pitch_acceleration, inputs.reference.z);
-    let limit = setting.uav.max_torque;
-    let inertia = own.inertia.x;
-    let gyroscopic = rates[(i + 1u) % 3u] * rates[(i + 2u) % 3u] * own.inertia.z;
-    let non_inertial = fma(gyroscopic, inertia, rates[i] * setting.uav.angular_drag);
+    let accelerations = vec3(roll_acceleration, pitch_acceleration, inputs.reference.row.z);
+    let limit = setting.plant.max_torque;
+    let inertia = own.plant.inertia;
+    let gyroscopic = rates[(i + 1u) % 3u] * rates[(i + 2u) % 3u] * own.plant.gyro;
+    let non_inertial = fma(gyroscopic, inertia, rates[i] * setting.plant.angular_drag);
     let wanted = fma(accelerations[i] + inputs.feedback, inertia, non_inertial);
     let limited = clamp(wanted, -limit, limit);
-    let told = fma(limited - non_inertial, own.inertia.y, -accelerations[i]);
+    let told = fma(limited - non_inertial, own.plant.inverse_inertia, -accelerations[i]);
     let command = fma(limited, command_gain, command_bias);
     let torque = command + inputs.force;
     let angular = attitude_acceleration(stage, 3u, torque, inputs.velocity);

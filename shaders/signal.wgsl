@@ -20,6 +20,8 @@ var<private> sines: array<Sine, max(N_SINES, 1u)>;
 var<private> squares: array<Square, max(N_SQUARES, 1u)>;
 // The constant disturbance.
 var<private> constant: f32;
+// Scale of the ground's reaction.
+var<private> ground: f32;
 // Sensor bias and noise of this step.
 var<private> held_sensor: f32;
 // What actuator faults leave of the command in this step, and what they add to it.
@@ -48,6 +50,7 @@ fn next_onset(step: u32) -> u32 {
 // this is exactly the sum of as many half steps.
 fn signals_begin(step: u32) {
     constant = drawn_number(CONSTANT);
+    ground = drawn_number(GROUND);
     for (var k = 0u; k < N_SINES; k++) {
         let word = SINES + 3u * k;
         let advance = drawn(word + 2u);

@@ -120,6 +120,12 @@ const CONTROLS: &[Control] = &[
         "gains",
     ),
     control(
+        "plant",
+        "lane_min(lane_max(value, low), high)",
+        "lane_max(lane_min(value, high), low)",
+        "clamp",
+    ),
+    control(
         "plant_uav",
         "-(cos_yaw * roll_sin_cos.x)",
         "cos_yaw * roll_sin_cos.x",
@@ -139,8 +145,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "plant_uav",
-        "fma(limited - non_inertial, own.inertia.y",
-        "fma(limited + non_inertial, own.inertia.y",
+        "fma(limited - non_inertial, own.plant.inverse_inertia",
+        "fma(limited + non_inertial, own.plant.inverse_inertia",
         "plant",
     ),
     control(
@@ -193,8 +199,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "group",
-        "let middle = reference_row(half + 1u);",
-        "let middle = reference_row(half);",
+        "let middle = reference_at(half + 1u);",
+        "let middle = reference_at(half);",
         "group_advance",
     ),
     control(
@@ -229,7 +235,7 @@ fn regress_probes_notice_a_changed_shader() {
         CONTROLS.iter().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        11,
+        12,
         "each file of shaders/ and the constants: {files:?}"
     );
     let Some(lab) = Lab::open() else { return };

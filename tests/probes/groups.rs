@@ -13,11 +13,12 @@ use crate::model::lanes::Lane;
 use crate::model::plant::{ReferenceRow, Response};
 
 /// The rows of all agents' channels.
-fn team_rows<const NC: usize, const NS: usize, const NX: usize>(
+fn team_rows<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    world: &World<P, NC, NS, NX>,
     scene: &Scene<NC, NS, NX>,
 ) -> Vec<ReferenceRow<f32>> {
     (0..scene.asked.len())
-        .flat_map(|a| rows(scene, a))
+        .flat_map(|a| rows(world, scene, a))
         .collect()
 }
 
@@ -50,7 +51,7 @@ pub(super) fn team_sum<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
 ) -> Compared {
     let body = "
         load();
-        publish(stage, POSITION, reference(stage, numbers(0u)).x + stepped_at(stage, 1u));
+        publish(stage, POSITION, reference(stage, asked_reference().row).x + stepped_at(stage, 1u));
         workgroupBarrier();
         answer_number(0u, team_sum(stage));";
     let world = World::<P, NC, NS, NX> {
@@ -58,7 +59,7 @@ pub(super) fn team_sum<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
         ..World::new(world.shape.clone(), world.plant)
     };
     world.check(lab, body, 1, sized([1.0; 4]), |scene| {
-        let rows = team_rows(scene);
+        let rows = team_rows(&world, scene);
         let mut setting = world.setting(&rows);
         setting.coupled = true;
         let sum = at_stage!(
@@ -74,9 +75,9 @@ pub(super) fn responses<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); answer_response(agent_respond(stage, numbers(0u)));";
+    let body = "load(); answer_response(agent_respond(stage, asked_reference()));";
     world.check(lab, body, 6, sized([1.0, 1.0, 1.0, 3.0]), |scene| {
-        let rows = team_rows(scene);
+        let rows = team_rows(world, scene);
         let setting = world.setting(&rows);
         let group = &scene.group;
         let team = at_stage!(
@@ -84,7 +85,7 @@ pub(super) fn responses<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
             STAGE,
             group.team_sum::<P, STAGE>(&setting, &rows)
         );
-        for (a, rows) in rows.chunks_exact(NC).enumerate() {
+        for (a, rows) in rows.chunks_exact(NC * P::ROWS).enumerate() {
             let agent = &scene.group.agents[a];
             let response = at_stage!(
                 scene.stage,
@@ -186,10 +187,10 @@ pub(super) fn stages<P: Flies<NC, NX>, const NC: usize, const NS: usize, const N
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); group_stage(stage, numbers(0u), step >= 500u, step);";
+    let body = "load(); group_stage(stage, asked_reference(), step >= 500u, step);";
     let h = crate::model::integrator::Step::new(world.step_s);
     world.check(lab, body, 0, sized([1.0, 1.0, 1.0, 3.0]), |scene| {
-        let rows = team_rows(scene);
+        let rows = team_rows(world, scene);
         let setting = world.setting(&rows);
         let settled = scene.step >= 500;
         let group = &mut scene.group;
@@ -215,7 +216,7 @@ pub(super) fn advanced<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
         signals_begin(span.first);
         group_hold(span.first);
         group_advance();";
-    let stride = world.shape.team * NC;
+    let stride = world.shape.table_rows();
     // The model's table begins with the run, the shaders' with a window.
     let before = (2 * world.span.first as usize) * stride;
     let window = &world.table[world.span.table_first as usize * stride..];
@@ -250,7 +251,7 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         group_hold(step);
         let shown = group_show();
         for (var k = 0u; k < SHOWN; k++) { answer_number(k, shown[k]); }";
-    let stride = world.shape.team * NC;
+    let stride = world.shape.table_rows();
     let row = &world.table[world.span.table_first as usize * stride..][..stride];
     world.check(lab, body, 10, nothing, |scene| {
         // The model's table is as long as the run until here.
@@ -259,7 +260,7 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         let setting = world.setting(&table);
         let shown = scene.group.show(&setting);
         let team = scene.group.team_sum::<P, 0>(&setting, row);
-        for (a, rows) in row.chunks_exact(NC).enumerate() {
+        for (a, rows) in row.chunks_exact(NC * P::ROWS).enumerate() {
             let agent = &scene.group.agents[a];
             let response = agent.respond::<P, 0>(&setting, rows, &team);
             let [position, _] = agent.motion::<P, 0>(&world.plant, rows);
@@ -315,7 +316,9 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         answer_number(7u, own.limits.y);
         answer_number(8u, own.inverse_inertia);
         answer_number(9u, own.kappa);
-        for (var k = 0u; k < 3u; k++) { answer_number(10u + k, own.inertia[k]); }
+        answer_number(10u, own.plant.inertia);
+        answer_number(11u, own.plant.inverse_inertia);
+        answer_number(12u, own.plant.gyro);
         answer_number(13u, drawn_number(CONSTANT));
         answer(14u, stored(OUTSIDE));
         answer_number(15u, stored_number(LARGEST));
@@ -324,7 +327,7 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         answer_number(18u, drawn_number(ERROR_RATE));
         store(TOTALS, asked(0u));
         store_number(TOTALS + 1u, number(1u));";
-    let uav: crate::backend::gpu::words::UavWords = world.plant.into();
+    let uav: crate::backend::gpu::setting::UavWords = world.plant.into();
     let shape = &world.shape;
     world.check(lab, body, 19, sized([1.0, 1.0]), |scene| {
         let index = scene.index;

@@ -4,10 +4,9 @@
 use super::shapes;
 use super::world::World;
 use crate::backend::gpu::group::{BINDINGS, ENTRIES};
+use crate::backend::gpu::setting::{GainsWords, SettingHead, UavWords, setting};
 use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::{
-    self, GainsWords, OUTCOME_WORDS, SHOWN_WORDS, SettingHead, Span, UavWords,
-};
+use crate::backend::gpu::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
 use crate::campaign::{Campaign, FIRST_ATTITUDE};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::controller::{FTC_STATES, OBSERVER};
@@ -105,9 +104,11 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
             .map(|(k, name)| (name.to_string(), 4 * k));
         assert_eq!(layout(&module, "Step"), (step.collect(), 16));
 
-        let head = size_of::<SettingHead>();
+        let plant = size_of::<SettingHead>();
+        let head = plant + size_of::<UavWords>();
         let limits = 16 * shape.channels;
-        let mut expected = offsets!(SettingHead: seed, settle_step, first_channel, h, uav);
+        let mut expected = offsets!(SettingHead: seed, settle_step, first_channel, h);
+        expected.push(("plant".to_string(), plant));
         expected.push(("limits".to_string(), head));
         expected.push(("gains".to_string(), head + limits));
         let span = head + limits + shape.kinds() * size_of::<GainsWords>();
@@ -140,7 +141,7 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
             let mut shapes = shapes::validated().into_iter();
             let shape = shapes.find(|shape| shape.plant == part.plant).unwrap();
             let (_, span) = layout(&module(&shape), "Setting");
-            assert_eq!(words::setting(&campaign, part, &controller).len(), span);
+            assert_eq!(setting(&campaign, part, &controller).len(), span);
             plants += 1;
         }
     }
@@ -222,6 +223,7 @@ fn val_constants_are_those_of_rust() {
             ("ATTITUDE", count(PlantKind::Attitude as usize)),
             ("THRUST", count(PlantKind::Thrust as usize)),
             ("NC", count(shape.channels)),
+            ("ROWS", count(shape.rows)),
             ("TEAM", count(shape.team)),
             ("LANES", count(shape.lanes)),
             ("WORKGROUP", count(shape.workgroup())),
@@ -230,10 +232,11 @@ fn val_constants_are_those_of_rust() {
             ("FIRST_ATTITUDE", count(FIRST_ATTITUDE)),
             ("COUPLED", flag(shape.coupled)),
             ("FTC", flag(shape.ftc)),
-            ("LIMITED", flag(shape.plant == PlantKind::Thrust)),
+            ("LIMITED", flag(shape.limited())),
             ("OBSERVER_MEASURED", flag(shape.observer_measured)),
             ("OBSERVER", count(OBSERVER)),
             ("EXTRA", count(FTC_STATES)),
+            ("EXTRA_STATES", count(shape.extra_states())),
             ("FLUSH_STEPS", vec![FLUSH_STEPS]),
             ("FAR_AWAY", number(FAR_AWAY)),
             ("MAX", number(f64::from(f32::MAX))),

@@ -5,7 +5,6 @@ use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::model::controller::{fault_estimates, feedback, injected, step_channel};
-use crate::model::episode::PlantKind;
 use crate::model::integrator::Step;
 use crate::model::plant::{Inputs, ReferenceRow, Response};
 use crate::model::plant_uav::Attitude;
@@ -188,31 +187,39 @@ pub(super) fn references<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         let r = reference(stage, numbers(0u));
         answer_number(0u, r.x);
         answer_number(1u, r.y);
-        let row = reference_row(stage);
-        for (var k = 0u; k < 4u; k++) { answer_number(2u + k, row[k]); }";
-    world.check(lab, body, 6, sized([1.0; 4]), |scene| {
+        let at = reference_at(stage);
+        for (var k = 0u; k < 4u; k++) { answer_number(2u + k, at.row[k]); }
+        answer(6u, at.place);";
+    world.check(lab, body, 7, sized([1.0; 4]), |scene| {
         let (stage, team) = (scene.stage, world.shape.team);
         scene.each(|scene, a, c| {
-            let rows = rows(scene, a);
+            let rows = rows(world, scene, a);
             let extra = at_stage!(stage, STAGE, *scene.group.agents[a].extra.at::<STAGE>());
             let [position, velocity] = world.plant.reference(&rows, &extra);
             scene.answer_number(a, c, position[c]);
             scene.answer_number(a, c, velocity[c]);
             let half = world.span.table_first as usize + stage;
-            for number in world.table[(half * team + a) * NC + c] {
+            let place = ((half * team + a) * NC + c) * P::ROWS;
+            for number in world.table[place] {
                 scene.answer_number(a, c, Tracked::exact(number));
             }
+            scene.answer(a, c, Expected::Bits(place as u32));
         });
     })
 }
 
-/// The rows of an agent's channels, which are the first four inputs of each.
-pub(super) fn rows<const NC: usize, const NS: usize, const NX: usize>(
+/// The rows of an agent's channels: the first of each is its first four inputs, what follows is in the table.
+pub(super) fn rows<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    world: &World<P, NC, NS, NX>,
     scene: &Scene<NC, NS, NX>,
     agent: usize,
 ) -> Vec<ReferenceRow<f32>> {
-    let row = |c: usize| std::array::from_fn(|k| f32::from_bits(scene.word(agent, c, k)));
-    (0..NC).map(row).collect()
+    let first = world.span.table_first as usize * world.shape.team + agent;
+    let mut rows = world.table[first * NC * P::ROWS..][..NC * P::ROWS].to_vec();
+    for c in 0..NC {
+        rows[c * P::ROWS] = std::array::from_fn(|k| f32::from_bits(scene.word(agent, c, k)));
+    }
+    rows
 }
 
 /// The answer of a channel as the shaders give it.
@@ -248,42 +255,17 @@ pub(super) fn plant<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    // As `agent_respond` publishes.
-    let respond = match world.shape.plant {
-        PlantKind::Axis => "answer_response(axis_respond(inputs));",
-        PlantKind::Attitude => {
-            "publish(stage, POSITION, inputs.position);
-            publish(stage, VELOCITY, inputs.velocity);
-            workgroupBarrier();
-            answer_response(attitude_respond(stage, inputs));"
-        }
-        PlantKind::Thrust => {
-            "let r = reference(stage, inputs.reference);
-            publish(stage, POSITION, inputs.position);
-            if own.channel < 3u {
-                publish(stage, COMMAND_BIAS, command_bias);
-                publish(stage, DEMAND, fma(inputs.feedback, setting.uav.mass, inputs.reference.w));
-                publish(stage, COMMAND_GAIN, command_gain);
-            } else {
-                publish(stage, VELOCITY, inputs.velocity);
-                publish(stage, REFERENCE, r.x);
-                publish(stage, REFERENCE_RATE, r.y);
-            }
-            workgroupBarrier();
-            answer_response(thrust_respond(stage, inputs));"
-        }
-        PlantKind::Leg => "",
-    };
-    let body = format!(
-        "load();
-        let inputs = Inputs(numbers(0u), number(4u), number(5u), number(6u), number(7u));
-        {respond}"
-    );
+    let body = "
+        load();
+        let inputs = Inputs(asked_reference(), number(4u), number(5u), number(6u), number(7u));
+        publish_channel(stage, inputs);
+        workgroupBarrier();
+        answer_response(respond(stage, inputs));";
     let sizes = [1.0, 1.0, 2.0, 3.0, 4.0, 2.0, 1.0, 1.0];
-    world.check(lab, &body, 6, sized(sizes), |scene| {
+    world.check(lab, body, 6, sized(sizes), |scene| {
         let stage = scene.stage;
         scene.each(|scene, a, c| {
-            let rows = rows(scene, a);
+            let rows = rows(world, scene, a);
             let input = |k: usize| std::array::from_fn(|c| scene.number(a, c, k));
             let agent = &scene.group.agents[a];
             let inputs = Inputs {

@@ -176,12 +176,18 @@ const LOOPS: &[Probe] = &[
     ),
     probe!(
         "reference",
-        ["reference", "reference_row"],
+        ["reference", "reference_at"],
         over_shapes!(loops::references)
     ),
     probe!(
         "plant",
-        ["axis_respond", "attitude_respond", "thrust_respond"],
+        [
+            "publish_channel",
+            "respond",
+            "axis_respond",
+            "attitude_respond",
+            "thrust_respond"
+        ],
         over_shapes!(loops::plant)
     ),
     probe!("attitude_acceleration", ["attitude_acceleration"], rotation),
@@ -268,6 +274,7 @@ const GROUPS: &[Probe] = &[
         "identify",
         [
             "identify",
+            "channel_plant",
             "drawn",
             "drawn_number",
             "stored",

@@ -32,6 +32,11 @@ fn numbers(k: u32) -> vec4<f32> {
     return vec4(number(k), number(k + 1u), number(k + 2u), number(k + 3u));
 }
 
+// A reference: its first row is an input of the function, what follows is in the table.
+fn asked_reference() -> Reference {
+    return Reference(numbers(0u), reference_at(0u).place);
+}
+
 // Result number `k` of the function that is probed.
 fn answer(k: u32, value: u32) {
     give(PROBE_IMAGE + k, value);

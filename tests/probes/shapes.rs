@@ -34,6 +34,7 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
     Shape {
         plant,
         channels,
+        rows: 1,
         team,
         lanes: if channels * team > 9 { 4 } else { 8 },
         ftc,

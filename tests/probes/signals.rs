@@ -84,7 +84,8 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         load();
         signals_begin(step);
         answer_number(0u, constant);
-        var at = 1u;
+        answer_number(1u, ground);
+        var at = 2u;
         for (var k = 0u; k < N_SINES; k++) {
             answer_number(at, sines[k].amplitude);
             answer(at + 1u, sines[k].advance);
@@ -96,7 +97,7 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             at += 2u;
         }";
     let counts = world.shape.counts;
-    let answers = 1 + 2 * (counts.sines + counts.squares);
+    let answers = 2 + 2 * (counts.sines + counts.squares);
     world.check(lab, body, answers, nothing, |scene| {
         let step = scene.step;
         for agent in &mut scene.group.agents {
@@ -108,6 +109,7 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         scene.each(|scene, a, c| {
             let signals = scene.group.agents[a].signals.clone();
             scene.answer_number(a, c, signals.constant[c]);
+            scene.answer_number(a, c, signals.ground[c]);
             for sine in &signals.sines {
                 scene.answer_number(a, c, sine[c].amplitude);
                 scene.answer(a, c, Expected::Bits(sine[c].advance));

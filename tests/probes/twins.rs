@@ -67,7 +67,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         include_str!("../../src/model/plant.rs"),
         &[
             ("reference", "reference"),
-            ("respond", "axis_respond"),
+            ("respond", "respond"),
             ("clamp", "clamp"),
         ],
     ),
@@ -197,7 +197,11 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["signals_begin"], "as many turns_add as half steps"),
     (&["noise_pair"], "half of draw"),
     (&["add_to_total"], "a line of flush"),
-    (&["slot", "seen", "publish", "reference_row"], "indexing"),
+    (&["slot", "seen", "publish", "reference_at"], "indexing"),
+    (
+        &["channel_plant", "publish_channel"],
+        "an invocation has one channel",
+    ),
     (
         &[
             "drawn",

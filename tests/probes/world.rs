@@ -5,8 +5,9 @@ use super::harness::{Case, Compared, Expected, Job, Lab, Left};
 use super::image::{FAILED, FIXED_IMAGE, image, stored};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
+use crate::backend::gpu::setting::{GainsWords, SettingHead, UavWords};
 use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::{self, GainsWords, NEVER, SettingHead, Span, UavWords};
+use crate::backend::gpu::words::{self, NEVER, Span};
 use crate::draw::member;
 use crate::model::condition::Condition;
 use crate::model::controller::ChannelGains;
@@ -130,8 +131,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             table_first: 3,
             output_first: 0,
         };
-        let rows = 3 + 2 * (span.until - span.first) as usize + 1;
-        let table = (0..rows * shape.team * NC)
+        let instants = 3 + 2 * (span.until - span.first) as usize + 1;
+        let table = (0..instants * shape.table_rows())
             .map(|_| std::array::from_fn(|_| some(1.0)))
             .collect();
         Self {
@@ -175,9 +176,10 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             settle_step: self.settle_step,
             first_channel: self.first as u32,
             h: [h.sixth, h.third, h.half, h.whole],
-            uav: self.plant.into(),
         };
+        let plant: UavWords = self.plant.into();
         let mut bytes = bytemuck::bytes_of(&head).to_vec();
+        bytes.extend(bytemuck::bytes_of(&plant));
         for limits in self.limits {
             let limits = [limits.max_error, limits.settled_error, 0.0, 0.0];
             bytes.extend(bytemuck::bytes_of(&limits));
@@ -213,6 +215,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         let mut signals = Signals::none();
         let some = &mut |low, high| L::number(numbers.between(low, high));
         signals.constant = std::array::from_fn(|_| some(-0.5, 0.5));
+        signals.ground = std::array::from_fn(|_| some(-1.0, 1.0));
         let switches = |numbers: &mut Numbers, low: f64, high: f64| -> [Switch<L>; NC] {
             std::array::from_fn(|_| Switch {
                 onset: L::number(numbers.one_of(&onsets)),

@@ -126,7 +126,7 @@ impl Sizes {
         Self {
             draws: invocations * words.drawn(),
             state: invocations * words.stored(),
-            table: (2 * window_steps as usize + 1) * shape.team * shape.channels * 4,
+            table: (2 * window_steps as usize + 1) * shape.table_rows() * 4,
             output: invocations * OUTCOME_WORDS.max(samples * SHOWN_WORDS),
         }
     }
@@ -188,9 +188,9 @@ pub(super) fn storage_limit(gpu: &Gpu) -> u64 {
 
 /// Steps whose references fit the table on the device.
 pub(super) fn window_steps(group: &Group, gpu: &Gpu, steps: u32) -> u32 {
-    let row = 16 * group.shape.team * group.shape.channels;
+    let instant = 16 * group.shape.table_rows();
     let bytes = TABLE.min(usize::try_from(storage_limit(gpu)).unwrap_or(TABLE));
-    word((bytes / row).saturating_sub(1) / 2).clamp(1, steps)
+    word((bytes / instant).saturating_sub(1) / 2).clamp(1, steps)
 }
 
 /// Bytes from one span to the next.

@@ -4,6 +4,7 @@ use super::GpuError;
 use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
 use super::group::{ENTRIES, Entry, Group, binding_layout, shape};
+use super::setting::setting;
 use super::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use crate::backend::Flown;
 use crate::campaign::Campaign;
@@ -135,7 +136,7 @@ impl<'g> GpuFlyer<'g> {
                     Some(group) => group.pipelines.clone(),
                     None => gpu.compile(&rewrite(shape.text()), &layout, ENTRIES)?,
                 };
-                let bytes = words::setting(campaign, part, gains);
+                let bytes = setting(campaign, part, gains);
                 let setting = gpu.checked(
                     || gpu.buffer(bytes.len().div_ceil(4), Use::Uniform),
                     |error| gpu.driver_error(error),

@@ -91,6 +91,7 @@ pub(super) fn shape(
     let mut shape = Shape {
         plant: part.plant,
         channels: part.channels.len(),
+        rows: part.rows,
         team: campaign.team,
         lanes: MAX_LANES,
         ftc,

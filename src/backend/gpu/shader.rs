@@ -12,14 +12,19 @@ use crate::model::rng::{self, Stream};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use std::fmt::Write;
 
-/// The files, in the order of what builds on what.
-const FILES: [&str; 10] = [
+/// The files on which every plant builds, in the order of what builds on what.
+const BELOW: [&str; 6] = [
     include_str!("../../../shaders/lanes.wgsl"),
     include_str!("../../../shaders/math.wgsl"),
     include_str!("../../../shaders/rng.wgsl"),
     include_str!("../../../shaders/integrator.wgsl"),
     include_str!("../../../shaders/controller.wgsl"),
-    include_str!("../../../shaders/plant_uav.wgsl"),
+    include_str!("../../../shaders/plant.wgsl"),
+];
+/// The files of the UAV.
+const UAV: [&str; 1] = [include_str!("../../../shaders/plant_uav.wgsl")];
+/// The files that build on a plant.
+const ABOVE: [&str; 4] = [
     include_str!("../../../shaders/signal.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
     include_str!("../../../shaders/group.wgsl"),
@@ -35,6 +40,8 @@ pub(crate) struct Shape {
     pub(crate) plant: PlantKind,
     /// Channels of the group.
     pub(crate) channels: usize,
+    /// Rows of each channel in the reference table.
+    pub(crate) rows: usize,
     /// Agents of an episode.
     pub(crate) team: usize,
     /// Episodes of a workgroup.
@@ -57,11 +64,29 @@ impl Shape {
         self.channels * self.team * self.lanes
     }
 
-    /// States of a channel: those of the largest controller and, under thrust, the command filter's angle and rate.
+    /// Rows of the reference table that belong to one instant.
+    pub(crate) fn table_rows(&self) -> usize {
+        self.team * self.channels * self.rows
+    }
+
+    /// States of a channel: those of the largest controller, and its plant's.
     pub(crate) fn states(&self) -> usize {
+        FTC_STATES + self.extra_states()
+    }
+
+    /// States that a channel has of its plant: under thrust, the command filter's angle and rate.
+    pub(crate) fn extra_states(&self) -> usize {
         match self.plant {
-            PlantKind::Thrust => FTC_STATES + FILTER_STATES,
-            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => FTC_STATES,
+            PlantKind::Thrust => FILTER_STATES,
+            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 0,
+        }
+    }
+
+    /// Whether the commands have limits, whose excess is counted.
+    pub(crate) fn limited(&self) -> bool {
+        match self.plant {
+            PlantKind::Thrust | PlantKind::Leg => true,
+            PlantKind::Axis | PlantKind::Attitude => false,
         }
     }
 
@@ -95,7 +120,10 @@ impl Shape {
     /// The whole text.
     pub(crate) fn text(&self) -> String {
         let mut text = self.constants();
-        for file in FILES {
+        let plant = match self.plant {
+            PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust | PlantKind::Leg => UAV,
+        };
+        for file in BELOW.into_iter().chain(plant).chain(ABOVE) {
             text.push('\n');
             text.push_str(file);
         }
@@ -112,6 +140,7 @@ impl Shape {
         }
         text.name("PLANT", &format!("{:?}", self.plant).to_uppercase());
         text.count("NC", self.channels);
+        text.count("ROWS", self.rows);
         text.count("TEAM", self.team);
         text.count("LANES", self.lanes);
         text.count("WORKGROUP", self.workgroup());
@@ -119,11 +148,12 @@ impl Shape {
         text.count("FIRST_ATTITUDE", FIRST_ATTITUDE);
         text.flag("COUPLED", self.coupled);
         text.flag("FTC", self.ftc);
-        text.flag("LIMITED", self.plant == PlantKind::Thrust);
+        text.flag("LIMITED", self.limited());
         text.flag("OBSERVER_MEASURED", self.observer_measured);
 
         text.count("OBSERVER", OBSERVER);
         text.count("EXTRA", FTC_STATES);
+        text.count("EXTRA_STATES", self.extra_states());
         text.count("STATES", FTC_STATES + FILTER_STATES);
         text.count("FLUSH_STEPS", FLUSH_STEPS as usize);
         text.number("FAR_AWAY", FAR_AWAY);

@@ -89,13 +89,13 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "the gyroscopic torque turns the wrong way",
-        "fma(gyroscopic, -own.inertia.z, net * own.inverse_inertia)",
-        "fma(gyroscopic, own.inertia.z, net * own.inverse_inertia)",
+        "fma(gyroscopic, -own.plant.gyro, net * own.inverse_inertia)",
+        "fma(gyroscopic, own.plant.gyro, net * own.inverse_inertia)",
     ),
     (
         "drag pushes",
-        "fma(inputs.velocity, -setting.uav.drag, command + inputs.force)",
-        "fma(inputs.velocity, setting.uav.drag, command + inputs.force)",
+        "fma(inputs.velocity, -setting.plant.drag, command + inputs.force)",
+        "fma(inputs.velocity, setting.plant.drag, command + inputs.force)",
     ),
     (
         "metrics begin a step late",
@@ -128,8 +128,8 @@ const THRUST: [Mutation; 8] = [
     ),
     (
         "torques may be a little larger",
-        "let limit = setting.uav.max_torque;",
-        "let limit = setting.uav.max_torque * 1.001;",
+        "let limit = setting.plant.max_torque;",
+        "let limit = setting.plant.max_torque * 1.001;",
     ),
     (
         "the observer is told of torques beyond the limit",
