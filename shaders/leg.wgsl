@@ -6,7 +6,7 @@
 struct Joint {
     // What is added to q, armature, sine and cosine of the twist.
     angle: vec4<f32>,
-    // Origin in the frame before.
+    // Origin in the frame before; damping.
     lever: vec4<f32>,
     // Twice the lever.
     lever_twice: vec4<f32>,
@@ -95,20 +95,20 @@ fn forward_dynamics(
     let t5 = turn(j5, q[5]);
     let motion_5 = next_motion(TWIST_5, j5, t5, rate[5], motion_4);
 
-    // Inwards: what the bias leaves of the torques.
+    // Inwards: what damping and bias leave of the torques.
     let load_5 = wrench(j5, motion_5);
     let load_4 = joined(TWIST_5, j5, t5, load_5, own_4);
     let load_3 = joined(TWIST_4, j4, t4, load_4, own_3);
     let load_2 = joined(TWIST_3, j3, t3, load_3, own_2);
     let load_1 = joined(TWIST_2, j2, t2, load_2, own_1);
     let load_0 = carried(TWIST_1, j1, t1, load_1);
-    let b5 = torque[5] - load_5.moment.z;
-    var b4 = torque[4] - load_4.moment.z;
+    let b5 = damped(j5, rate[5], torque[5]) - load_5.moment.z;
+    var b4 = damped(j4, rate[4], torque[4]) - load_4.moment.z;
     var b3210 = vec4(
-        torque[0] - load_0.moment.z - own_0,
-        torque[1] - load_1.moment.z,
-        torque[2] - load_2.moment.z,
-        torque[3] - load_3.moment.z,
+        damped(j0, rate[0], torque[0]) - load_0.moment.z - own_0,
+        damped(j1, rate[1], torque[1]) - load_1.moment.z,
+        damped(j2, rate[2], torque[2]) - load_2.moment.z,
+        damped(j3, rate[3], torque[3]) - load_3.moment.z,
     );
 
     // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints before.
@@ -202,6 +202,11 @@ fn forward_dynamics(
 fn turn(joint: Joint, q: f32) -> Turn {
     let both = sin_cos(q + joint.angle.x);
     return Turn(both.x, both.y);
+}
+
+// What the joint's damping leaves of its torque.
+fn damped(joint: Joint, rate: f32, torque: f32) -> f32 {
+    return fma(rate, -joint.lever.w, torque);
 }
 
 // The first link turns about a fixed axis: only diagonal entries of its spin.

@@ -41,16 +41,20 @@ impl<R: Real, const CUT: bool> Leg<R, CUT> {
 
 /// A joint's row of a matrix, from the first of its two rows of the table on.
 #[inline(always)]
-fn matrix_row<R: Real>(rows: &[ReferenceRow<R>], first: usize) -> [R; LEG_JOINTS] {
+pub(crate) fn matrix_row<R: Real>(rows: &[ReferenceRow<R>], first: usize) -> [R; LEG_JOINTS] {
     let [a, b, c, d] = rows[first];
     let [e, f, ..] = rows[first + 1];
     [a, b, c, d, e, f]
 }
 
-/// from + row factors.
+/// base + row factors.
 #[inline(always)]
-fn plus_product<L: Lane>(from: L, row: &[L::Real; LEG_JOINTS], factors: &[L; LEG_JOINTS]) -> L {
-    let mut sum = from;
+pub(crate) fn plus_product<L: Lane>(
+    base: L,
+    row: &[L::Real; LEG_JOINTS],
+    factors: &[L; LEG_JOINTS],
+) -> L {
+    let mut sum = base;
     for k in 0..LEG_JOINTS {
         sum = factors[k].mul_add(L::splat(row[k]), sum);
     }

@@ -149,6 +149,38 @@ const CONTROLS: &[Control] = &[
         "fma(limited + non_inertial, own.plant.inverse_inertia",
         "plant",
     ),
+    control("plant_biped", "row[5], sum)", "row[4], sum)", "matrix_row"),
+    control("plant_biped", "limited, CUT)", "limited, true)", "plant"),
+    control(
+        "plant_biped",
+        "table[at.place + 2u].z",
+        "table[at.place + 2u].w",
+        "plant",
+    ),
+    control(
+        "plant_biped",
+        "inputs.feedback - plus_product",
+        "inputs.feedback + plus_product",
+        "plant",
+    ),
+    control(
+        "plant_biped",
+        "leg_seen(stage, VELOCITY),",
+        "leg_seen(stage, POSITION),",
+        "plant",
+    ),
+    control(
+        "leg",
+        "fma(rate, -joint.lever.w, torque)",
+        "fma(rate, -joint.lever.z, torque)",
+        "forward_dynamics",
+    ),
+    control(
+        "leg",
+        "let l1 = m1.x * d1;",
+        "let l1 = m1.x * d2;",
+        "forward_dynamics",
+    ),
     control(
         "signal",
         "drawn(SWITCHES + 2u * k) <= step",
@@ -235,7 +267,7 @@ fn regress_probes_notice_a_changed_shader() {
         CONTROLS.iter().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        12,
+        14,
         "each file of shaders/ and the constants: {files:?}"
     );
     let Some(lab) = Lab::open() else { return };

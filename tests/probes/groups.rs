@@ -6,8 +6,10 @@ use super::numbers::Numbers;
 use super::signals::{begin, next, switches};
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
+use crate::backend::gpu::setting::{LegPlantWords, UavWords};
 use crate::backend::gpu::words::NEVER;
 use crate::model::controller::fault_estimates;
+use crate::model::episode::PlantKind;
 use crate::model::group::Agent;
 use crate::model::lanes::Lane;
 use crate::model::plant::{ReferenceRow, Response};
@@ -316,20 +318,16 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         answer_number(7u, own.limits.y);
         answer_number(8u, own.inverse_inertia);
         answer_number(9u, own.kappa);
-        answer_number(10u, own.plant.inertia);
-        answer_number(11u, own.plant.inverse_inertia);
-        answer_number(12u, own.plant.gyro);
-        answer_number(13u, drawn_number(CONSTANT));
-        answer(14u, stored(OUTSIDE));
-        answer_number(15u, stored_number(LARGEST));
-        answer_number(16u, drawn_number(INTEGRAL));
-        answer_number(17u, drawn_number(ERROR));
-        answer_number(18u, drawn_number(ERROR_RATE));
+        answer_number(10u, drawn_number(CONSTANT));
+        answer(11u, stored(OUTSIDE));
+        answer_number(12u, stored_number(LARGEST));
+        answer_number(13u, drawn_number(INTEGRAL));
+        answer_number(14u, drawn_number(ERROR));
+        answer_number(15u, drawn_number(ERROR_RATE));
         store(TOTALS, asked(0u));
         store_number(TOTALS + 1u, number(1u));";
-    let uav: crate::backend::gpu::setting::UavWords = world.plant.into();
     let shape = &world.shape;
-    world.check(lab, body, 19, sized([1.0, 1.0]), |scene| {
+    world.check(lab, body, 16, sized([1.0, 1.0]), |scene| {
         let index = scene.index;
         let lane = index % shape.lanes;
         scene.each(|scene, a, c| {
@@ -342,12 +340,6 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
                 agent.inverse_inertia[c],
                 agent.kappa,
             ];
-            let i = (world.first + c) % 3;
-            let inertia = if NC == 1 {
-                [0.0; 3]
-            } else {
-                [uav.inertia[i], uav.inverse_inertia[i], uav.gyro[i]]
-            };
             let metrics = agent.metrics[c];
             let constant = agent.signals.constant[c];
             let [square, absolute] = scene.numbers(a, c);
@@ -364,17 +356,47 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
             ] {
                 scene.answer(a, c, Expected::Bits(word as u32));
             }
-            for number in numbers
-                .into_iter()
-                .chain(inertia.map(Tracked::exact))
-                .chain([constant])
-            {
+            for number in numbers.into_iter().chain([constant]) {
                 scene.answer_number(a, c, number);
             }
             scene.answer(a, c, Expected::Last(metrics.outside));
             scene.answer_number(a, c, metrics.largest);
             for number in condition.initial[c] {
                 scene.answer_number(a, c, number);
+            }
+        });
+    })
+}
+
+/// What a channel takes of the constants of its plant.
+pub(super) fn constants<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    lab: &Lab,
+    world: &World<P, NC, NS, NX>,
+) -> Compared {
+    let bytes = world.plant.bytes();
+    let taken: [(&str, [f32; NC]); 3] = if world.shape.plant == PlantKind::Leg {
+        let leg: LegPlantWords = bytemuck::pod_read_unaligned(&bytes);
+        let max_torque = std::array::from_fn(|c| leg.max_torque[c]);
+        [("max_torque", max_torque); 3]
+    } else {
+        let uav: UavWords = bytemuck::pod_read_unaligned(&bytes);
+        let attitude = |of: [f32; 4]| {
+            let axis = |c| (world.first + c) % 3;
+            std::array::from_fn(|c| if NC == 1 { 0.0 } else { of[axis(c)] })
+        };
+        [
+            ("inertia", attitude(uav.inertia)),
+            ("inverse_inertia", attitude(uav.inverse_inertia)),
+            ("gyro", attitude(uav.gyro)),
+        ]
+    };
+    let answers = (0..).zip(taken);
+    let answers = answers.map(|(k, (name, _))| format!("answer_number({k}u, own.plant.{name});"));
+    let body = format!("load(); {}", answers.collect::<String>());
+    world.check(lab, &body, 3, nothing, |scene| {
+        scene.each(|scene, a, c| {
+            for (_, numbers) in taken {
+                scene.answer_number(a, c, Tracked::exact(numbers[c]));
             }
         });
     })

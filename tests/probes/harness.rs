@@ -174,7 +174,8 @@ impl Lab {
     fn text(&self, job: &Job<'_>) -> String {
         let mut text = job.shape.text();
         if let Some((old, new)) = self.change {
-            assert_eq!(text.matches(old).count(), 1, "{old:?} is there once");
+            // In the text of another plant, it need not be there.
+            assert!(text.matches(old).count() <= 1, "{old:?} is there once");
             text = text.replace(old, new);
         }
         let first = job.cases.len() * job.shape.words().drawn();

@@ -4,7 +4,7 @@
 use super::shapes;
 use super::world::World;
 use crate::backend::gpu::group::{BINDINGS, ENTRIES};
-use crate::backend::gpu::setting::{GainsWords, SettingHead, UavWords, setting};
+use crate::backend::gpu::setting::{GainsWords, LegPlantWords, SettingHead, UavWords, setting};
 use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
 use crate::campaign::{Campaign, FIRST_ATTITUDE};
@@ -12,6 +12,7 @@ use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
 use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
+use crate::model::leg::LegWords;
 use crate::model::math;
 use crate::model::rng::{self, Stream};
 use naga::{AddressSpace, Expression, Handle, Literal, Module, StorageAccess, TypeInner};
@@ -57,7 +58,7 @@ macro_rules! offsets {
 #[test]
 fn val_every_shape_is_valid_wgsl() {
     let shapes = shapes::validated();
-    assert_eq!(shapes.len(), 144);
+    assert_eq!(shapes.len(), 192);
     for shape in shapes.iter().chain(&shapes::probed()) {
         let module = module(shape);
         let entries: Vec<&str> = module
@@ -84,11 +85,23 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
                 size_of::<Span>()
             )
         );
-        let (members, span) = layout(&module, "Uav");
-        let mut expected = offsets!(UavWords: mass, inverse_mass, drag, gravity, inertia, inverse_inertia, gyro, angular_drag, filter_rad_s, max_thrust, max_torque, max_tilt);
-        let unused = offset_of!(UavWords, unused);
-        expected.extend((0..3).map(|k| (format!("unused_{k}"), unused + 4 * k)));
-        assert_eq!((members, span), (expected, size_of::<UavWords>()));
+        let plant_span = if shape.plant == PlantKind::Leg {
+            assert_eq!(
+                layout(&module, "Leg"),
+                (
+                    offsets!(LegPlantWords: model, max_torque),
+                    size_of::<LegPlantWords>()
+                )
+            );
+            assert_eq!(layout(&module, "LegModel").1, size_of::<LegWords>());
+            size_of::<LegPlantWords>()
+        } else {
+            let mut expected = offsets!(UavWords: mass, inverse_mass, drag, gravity, inertia, inverse_inertia, gyro, angular_drag, filter_rad_s, max_thrust, max_torque, max_tilt);
+            let unused = offset_of!(UavWords, unused);
+            expected.extend((0..3).map(|k| (format!("unused_{k}"), unused + 4 * k)));
+            assert_eq!(layout(&module, "Uav"), (expected, size_of::<UavWords>()));
+            size_of::<UavWords>()
+        };
         assert_eq!(
             layout(&module, "ChannelGains"),
             (
@@ -105,7 +118,7 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
         assert_eq!(layout(&module, "Step"), (step.collect(), 16));
 
         let plant = size_of::<SettingHead>();
-        let head = plant + size_of::<UavWords>();
+        let head = plant + plant_span;
         let limits = 16 * shape.channels;
         let mut expected = offsets!(SettingHead: seed, settle_step, first_channel, h);
         expected.push(("plant".to_string(), plant));
@@ -133,7 +146,7 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         kind: ControllerKind::Ftc,
     };
     let mut plants = 0;
-    for name in ["uav-paper", "uav-physical"] {
+    for name in ["uav-paper", "uav-physical", "biped-ground-reaction"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("campaigns/{name}.toml"));
         let campaign = Campaign::load(&path).unwrap();
         let model: Model<f32> = Model::new(&campaign);
@@ -146,8 +159,8 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         }
     }
     assert_eq!(
-        plants, 5,
-        "three axes and the attitude; all channels under thrust"
+        plants, 7,
+        "three axes and the attitude; all channels under thrust; two legs"
     );
     assert_eq!(
         world.bytes().len(),
@@ -222,6 +235,7 @@ fn val_constants_are_those_of_rust() {
             ("AXIS", count(PlantKind::Axis as usize)),
             ("ATTITUDE", count(PlantKind::Attitude as usize)),
             ("THRUST", count(PlantKind::Thrust as usize)),
+            ("LEG", count(PlantKind::Leg as usize)),
             ("NC", count(shape.channels)),
             ("ROWS", count(shape.rows)),
             ("TEAM", count(shape.team)),
@@ -232,6 +246,7 @@ fn val_constants_are_those_of_rust() {
             ("FIRST_ATTITUDE", count(FIRST_ATTITUDE)),
             ("COUPLED", flag(shape.coupled)),
             ("FTC", flag(shape.ftc)),
+            ("CUT", flag(shape.cut)),
             ("LIMITED", flag(shape.limited())),
             ("OBSERVER_MEASURED", flag(shape.observer_measured)),
             ("OBSERVER", count(OBSERVER)),
@@ -277,6 +292,8 @@ fn val_constants_are_those_of_rust() {
                 .into_iter()
                 .map(|(name, word)| (name, count(word))),
         );
+        let of_the_plant = shape.plant_constants.iter();
+        expected.extend(of_the_plant.map(|(name, value)| (name.as_str(), vec![*value])));
         if !shape.noise_entries.is_empty() {
             expected.push(("NOISE_ENTRIES", shape.noise_entries.clone()));
         }

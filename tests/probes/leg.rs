@@ -1,10 +1,15 @@
-//! shaders/leg.wgsl against the Rust code in double precision and against an independent implementation.
+//! Probes of what shaders/plant_biped.wgsl and leg.wgsl have of their own; and leg.wgsl against the Rust code in double
+//! precision and against an independent implementation.
 
-use super::harness::{BLANK, Lab};
+use super::harness::{BLANK, Compared, Lab};
+use super::loops::{rows, sized};
 use super::shapes;
+use super::tracked::Tracked;
+use super::world::World;
+use crate::backend::gpu::shader::Shape;
 use crate::model::lanes::Lane;
-use crate::model::leg::{LegJoint, LegModel, LegWords, forward_dynamics};
-use crate::robot::Robot;
+use crate::model::leg::{LEG_JOINTS, LegJoint, LegModel, LegWords, forward_dynamics};
+use crate::model::plant_biped::{Leg, matrix_row, plus_product};
 use std::path::Path;
 
 const PROBE: &str = "
@@ -31,19 +36,73 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
 const ROBOTS: [&str; 2] = ["g1_12dof", "berkeley_humanoid"];
 
 fn text(constants: &[(String, u32)]) -> String {
-    let named = constants
-        .iter()
-        .map(|(name, value)| format!("const {name} = {value}u;\n"));
-    let constants: String = named.collect();
-    let leg = include_str!("../../shaders/leg.wgsl");
-    // What the leg needs of the other shaders: sines, and the bindings.
-    let shared = shapes::probed().into_iter().next().unwrap().text();
-    format!("{constants}{shared}{leg}{PROBE}")
+    let [.., shape] = shapes::probed();
+    let shape = Shape {
+        plant_constants: constants.to_vec(),
+        ..shape
+    };
+    format!("{}{PROBE}", shape.text())
+}
+
+/// A joint's row of a matrix, and its product with what the joints have published.
+pub(super) fn matrix_rows<const CUT: bool, const NS: usize>(
+    lab: &Lab,
+    world: &World<Leg<f32, CUT>, 6, NS, 0>,
+) -> Compared {
+    let body = "
+        load();
+        publish(stage, DEMAND, number(4u));
+        workgroupBarrier();
+        let row = matrix_row(asked_reference(), 1u);
+        let factors = leg_seen(stage, DEMAND);
+        for (var k = 0u; k < 6u; k++) {
+            var numbers = row;
+            answer_number(k, numbers[k]);
+            numbers = factors;
+            answer_number(6u + k, numbers[k]);
+        }
+        answer_number(12u, plus_product(stage, number(5u), row, DEMAND));";
+    world.check(lab, body, 13, sized([1.0; 6]), |scene| {
+        scene.each(|scene, a, c| {
+            let count = world.shape.rows;
+            let rows = rows(world, scene, a);
+            let row = matrix_row(&rows[count * c..count * (c + 1)], 1);
+            let factors: [Tracked; LEG_JOINTS] = std::array::from_fn(|k| scene.number(a, k, 4));
+            for number in row.map(Tracked::exact).into_iter().chain(factors) {
+                scene.answer_number(a, c, number);
+            }
+            let from = scene.number(a, c, 5);
+            scene.answer_number(a, c, plus_product(from, &row, &factors));
+        });
+    })
+}
+
+/// The forward dynamics: every invocation has a leg of its own here.
+pub(super) fn dynamics<const CUT: bool, const NS: usize>(
+    lab: &Lab,
+    world: &World<Leg<f32, CUT>, 6, NS, 0>,
+) -> Compared {
+    let body = "
+        load();
+        let q = array(number(0u), number(1u), number(2u), number(3u), number(4u), number(5u));
+        let rate = array(number(6u), number(7u), number(8u), number(9u), number(10u), number(11u));
+        let torque = array(number(12u), number(13u), number(14u), number(15u), number(16u), number(17u));
+        var found = forward_dynamics(setting.plant.model, q, rate, torque);
+        for (var k = 0u; k < 6u; k++) { answer_number(k, found[k]); }";
+    let sizes = std::array::from_fn(|k: usize| [1.5, 2.0, 10.0][k / LEG_JOINTS]);
+    world.check(lab, body, 6, sized::<18>(sizes), |scene| {
+        scene.each(|scene, a, c| {
+            let six = |first| std::array::from_fn(|k| scene.number(a, c, first + k));
+            let [q, rate, torque] = [0, 6, 12].map(six);
+            for number in forward_dynamics(&world.plant.model, &q, &rate, &torque) {
+                scene.answer_number(a, c, number);
+            }
+        });
+    })
 }
 
 fn models(name: &str, leg: usize) -> (LegModel<f64>, LegModel<f32>) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("campaigns/robots/{name}.toml"));
-    let robot = Robot::load(&path).unwrap();
+    let robot = shapes::robot(name);
     let joints = robot.legs[leg].joints.each_ref().map(LegJoint::from);
     let gravity = robot.gravity_m_s2;
     (

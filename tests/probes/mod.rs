@@ -7,7 +7,7 @@
 //! | `pure`, `loops`, `signals`, `groups` | the probes |
 //! | `controls` | one change of the shaders at a time, and the probe that must notice |
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
-//! | `leg` | the dynamics of a robot's leg, which no episode flies yet |
+//! | `leg` | the dynamics of a robot's leg |
 //! | `world`, `image` | teams in random states, and how their state travels |
 //!
 //! They are in the library because they see its internals. Without an adapter the probes print SKIPPED, unless
@@ -75,7 +75,14 @@ macro_rules! over_shapes {
                     (PlantKind::Thrust, false) => {
                         $probe(lab, &World::<_, 6, 6, 4>::new(shape, shapes::thrust()))
                     }
-                    (PlantKind::Leg, _) => Compared::default(),
+                    (PlantKind::Leg, true) => $probe(
+                        lab,
+                        &World::<_, 6, 10, 0>::new(shape, shapes::leg::<true>()),
+                    ),
+                    (PlantKind::Leg, false) => $probe(
+                        lab,
+                        &World::<_, 6, 6, 0>::new(shape, shapes::leg::<false>()),
+                    ),
                 });
                 // A changed shader need not be flown on.
                 if !all.wrong.is_empty() {
@@ -96,12 +103,24 @@ macro_rules! probe {
 
 /// The rotation, of both plants that have one.
 fn rotation(lab: &Lab) -> Compared {
-    let [_, _, _, attitude, _, thrust] = shapes::probed();
+    let [_, _, _, attitude, _, thrust, ..] = shapes::probed();
     let plant = shapes::attitude();
     let mut all = loops::rotation(lab, &World::<_, 3, 10, 0>::new(attitude, plant), plant);
     let world = World::<_, 6, 10, 4>::new(thrust, shapes::thrust());
     all.add(loops::rotation(lab, &world, shapes::thrust().attitude));
     all
+}
+
+/// What a joint reads and hears of the others.
+fn leg_rows(lab: &Lab) -> Compared {
+    let [.., leg] = shapes::probed();
+    leg::matrix_rows(lab, &World::<_, 6, 10, 0>::new(leg, shapes::leg::<true>()))
+}
+
+/// The forward dynamics of a leg.
+fn leg_dynamics(lab: &Lab) -> Compared {
+    let [.., leg, _] = shapes::probed();
+    leg::dynamics(lab, &World::<_, 6, 6, 0>::new(leg, shapes::leg::<false>()))
 }
 
 /// Pairs of noise, of a shape that has any.
@@ -186,9 +205,42 @@ const LOOPS: &[Probe] = &[
             "respond",
             "axis_respond",
             "attitude_respond",
-            "thrust_respond"
+            "thrust_respond",
+            "leg_accelerate"
         ],
         over_shapes!(loops::plant)
+    ),
+    probe!(
+        "matrix_row",
+        ["matrix_row", "plus_product", "leg_seen"],
+        leg_rows
+    ),
+    probe!(
+        "forward_dynamics",
+        [
+            "forward_dynamics",
+            "turn",
+            "damped",
+            "first_motion",
+            "first_moment",
+            "second_motion",
+            "next_motion",
+            "at_lever",
+            "wrench",
+            "turned",
+            "turned_back",
+            "twisted",
+            "untwisted",
+            "carried",
+            "joined",
+            "levered",
+            "tip",
+            "composite",
+            "turned_second",
+            "twisted_second",
+            "momentum"
+        ],
+        leg_dynamics
     ),
     probe!("attitude_acceleration", ["attitude_acceleration"], rotation),
 ];
@@ -274,7 +326,6 @@ const GROUPS: &[Probe] = &[
         "identify",
         [
             "identify",
-            "channel_plant",
             "drawn",
             "drawn_number",
             "stored",
@@ -283,6 +334,11 @@ const GROUPS: &[Probe] = &[
             "store_number"
         ],
         over_shapes!(groups::identified)
+    ),
+    probe!(
+        "channel_plant",
+        ["channel_plant"],
+        over_shapes!(groups::constants)
     ),
     probe!("resume", ["resume"], over_shapes!(groups::resumed)),
     probe!("keep", ["keep"], over_shapes!(groups::kept)),

@@ -1,10 +1,14 @@
 //! The shapes that are checked and probed.
 
+use crate::backend::gpu::shader::PLANTS;
 use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::Counts;
 use crate::campaign::{ActuationKind, Uav};
 use crate::model::episode::PlantKind;
+use crate::model::plant_biped::Leg;
 use crate::model::plant_uav::{Attitude, Axis, Thrust};
+use crate::robot::Robot;
+use std::path::Path;
 
 /// No signal.
 const NONE: Counts = Counts {
@@ -31,10 +35,22 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
         PlantKind::Attitude => 3,
         PlantKind::Thrust | PlantKind::Leg => 6,
     };
+    // The commands of those legs are cut whose team is coupled.
+    let cut = plant == PlantKind::Leg && coupled;
+    let plant_constants = match plant {
+        PlantKind::Leg => leg::<false>().model.shader_constants(),
+        PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust => Vec::new(),
+    };
     Shape {
         plant,
+        plant_constants,
+        cut,
         channels,
-        rows: 1,
+        rows: match (plant, cut) {
+            (PlantKind::Leg, true) => 5,
+            (PlantKind::Leg, false) => 3,
+            _ => 1,
+        },
         team,
         lanes: if channels * team > 9 { 4 } else { 8 },
         ftc,
@@ -55,7 +71,7 @@ pub(super) fn plain() -> Shape {
 
 /// The shapes whose functions are probed: each plant for one agent and for a coupled team, each controller, without and with
 /// signals.
-pub(super) fn probed() -> [Shape; 6] {
+pub(super) fn probed() -> [Shape; 8] {
     let noisy = Counts { noises: 1, ..NONE };
     [
         shape(PlantKind::Axis, 1, true, false, ALL),
@@ -64,6 +80,8 @@ pub(super) fn probed() -> [Shape; 6] {
         shape(PlantKind::Attitude, 3, true, true, ALL),
         shape(PlantKind::Thrust, 1, false, false, ALL),
         shape(PlantKind::Thrust, 3, true, true, ALL),
+        shape(PlantKind::Leg, 1, false, false, ALL),
+        shape(PlantKind::Leg, 2, true, true, noisy),
     ]
 }
 
@@ -83,7 +101,7 @@ pub(super) fn validated() -> Vec<Shape> {
     let counts = (0..6).map(single).chain([NONE, ALL]);
     let mut shapes = Vec::new();
     for counts in counts {
-        for plant in [PlantKind::Axis, PlantKind::Attitude, PlantKind::Thrust] {
+        for plant in PLANTS {
             for (team, coupled) in [(1, false), (3, false), (3, true)] {
                 for ftc in [false, true] {
                     shapes.push(shape(plant, team, ftc, coupled, counts));
@@ -120,4 +138,22 @@ pub(super) fn attitude() -> Attitude<f32> {
 
 pub(super) fn thrust() -> Thrust<f32> {
     Thrust::new(&uav())
+}
+
+/// A right leg with damped joints, whose limits are met by some of the random states. Its rotors are heavy, so that no joint
+/// moves far more than the others, in which rounding errors would drown it.
+pub(super) fn leg<const CUT: bool>() -> Leg<f32, CUT> {
+    let mut robot = robot("g1_12dof");
+    for (j, joint) in (0_u8..).zip(&mut robot.legs[1].joints) {
+        joint.damping_n_m_s = 0.3 + 0.1 * f64::from(j);
+        joint.armature_kg_m2 = 2.0 - 0.2 * f64::from(j);
+        joint.torque_max_n_m = 3.0 + f64::from(j);
+    }
+    Leg::new(&robot, 1)
+}
+
+/// A robot that is shipped.
+pub(super) fn robot(name: &str) -> Robot {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("campaigns/robots/{name}.toml"));
+    Robot::load(&path).unwrap()
 }

@@ -233,6 +233,7 @@ impl Lane for Tracked {
         Self::new(<f32 as Lane>::ln(self.value), split.error + moved)
     }
 
+    #[inline(never)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         kernel.run()
     }

@@ -5,7 +5,7 @@ use super::harness::{Case, Compared, Expected, Job, Lab, Left};
 use super::image::{FAILED, FIXED_IMAGE, image, stored};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
-use crate::backend::gpu::setting::{GainsWords, SettingHead, UavWords};
+use crate::backend::gpu::setting::{GainsWords, PlantWords, SettingHead};
 use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::{self, NEVER, Span};
 use crate::draw::member;
@@ -30,14 +30,11 @@ const INPUT: u32 = 4;
 
 /// A plant that worlds are made of.
 pub(super) trait Flies<const NC: usize, const NX: usize>:
-    Plant<Tracked, NC, NX> + Into<UavWords>
+    Plant<Tracked, NC, NX> + PlantWords
 {
 }
 
-impl<P: Plant<Tracked, NC, NX> + Into<UavWords>, const NC: usize, const NX: usize> Flies<NC, NX>
-    for P
-{
-}
+impl<P: Plant<Tracked, NC, NX> + PlantWords, const NC: usize, const NX: usize> Flies<NC, NX> for P {}
 
 /// Scenes of one shape: a scene is a team in one episode.
 pub(super) struct World<P, const NC: usize, const NS: usize, const NX: usize> {
@@ -122,7 +119,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         let first = match shape.plant {
             PlantKind::Axis => 2,
             PlantKind::Attitude => 3,
-            PlantKind::Thrust | PlantKind::Leg => 0,
+            PlantKind::Thrust => 0,
+            PlantKind::Leg => 6,
         };
         // A span that crosses a flush, a settle step within it, and the table's window ahead of it.
         let span = Span {
@@ -177,9 +175,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             first_channel: self.first as u32,
             h: [h.sixth, h.third, h.half, h.whole],
         };
-        let plant: UavWords = self.plant.into();
         let mut bytes = bytemuck::bytes_of(&head).to_vec();
-        bytes.extend(bytemuck::bytes_of(&plant));
+        bytes.extend(self.plant.bytes());
         for limits in self.limits {
             let limits = [limits.max_error, limits.settled_error, 0.0, 0.0];
             bytes.extend(bytemuck::bytes_of(&limits));

@@ -1,9 +1,10 @@
 //! The shaders of a group of channels under one controller: their shape on an adapter, and their bindings.
 
 use super::device::Gpu;
+use super::setting::leg;
 use super::shader::Shape;
 use super::{GpuError, words};
-use crate::campaign::{Campaign, ObserverStart};
+use crate::campaign::{Agent, Campaign, ObserverStart};
 use crate::draw::draw;
 use crate::model::episode::{Part, PlantKind};
 
@@ -90,6 +91,11 @@ pub(super) fn shape(
     let limits = gpu.limits();
     let mut shape = Shape {
         plant: part.plant,
+        plant_constants: match &campaign.agent {
+            Agent::Uav(_) => Vec::new(),
+            Agent::Biped(biped) => leg(biped, part).model.shader_constants(),
+        },
+        cut: campaign.is_limited(),
         channels: part.channels.len(),
         rows: part.rows,
         team: campaign.team,

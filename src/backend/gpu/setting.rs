@@ -1,11 +1,13 @@
 //! The constants of a group of channels under a controller, as its shaders read them: `Setting` in shaders/episode.wgsl.
 
 use super::words::word;
-use crate::campaign::{Agent, Campaign};
+use crate::campaign::{Agent, Biped, Campaign};
 use crate::model::controller::ChannelGains;
 use crate::model::episode::{Controller, Part, PlantKind};
 use crate::model::integrator::Step;
+use crate::model::leg::{LEG_JOINTS, LegWords};
 use crate::model::metric::Limits;
+use crate::model::plant_biped::Leg;
 use crate::model::plant_uav::{Attitude, Axis, Thrust};
 use crate::model::rng::key;
 use bytemuck::{Pod, Zeroable};
@@ -27,6 +29,14 @@ pub(crate) struct UavWords {
     pub(crate) max_torque: f32,
     pub(crate) max_tilt: f32,
     pub(crate) unused: [f32; 3],
+}
+
+/// Twin of `Leg` in shaders/plant_biped.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LegPlantWords {
+    pub(crate) model: LegWords,
+    pub(crate) max_torque: [f32; 8],
 }
 
 /// Twin of `ChannelGains` in shaders/controller.wgsl.
@@ -92,6 +102,42 @@ impl From<Thrust<f32>> for UavWords {
     }
 }
 
+/// A plant's constants as its shaders read them.
+pub(crate) trait PlantWords {
+    /// The bytes of `Plant` in the shaders.
+    fn bytes(&self) -> Vec<u8>;
+}
+
+impl PlantWords for Axis<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Attitude<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Thrust<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl<const CUT: bool> PlantWords for Leg<f32, CUT> {
+    fn bytes(&self) -> Vec<u8> {
+        let mut max_torque = [0.0; 8];
+        max_torque[..LEG_JOINTS].copy_from_slice(&self.max_torque);
+        let words = LegPlantWords {
+            model: LegWords::from(&self.model),
+            max_torque,
+        };
+        bytemuck::bytes_of(&words).to_vec()
+    }
+}
+
 impl From<&ChannelGains<f32>> for GainsWords {
     fn from(gains: &ChannelGains<f32>) -> Self {
         Self {
@@ -109,9 +155,6 @@ pub(crate) fn setting(
     part: &Part<f32>,
     controller: &Controller<f32>,
 ) -> Vec<u8> {
-    let Agent::Uav(uav) = &campaign.agent else {
-        return Vec::new();
-    };
     let h = Step::<f32>::new(campaign.time.step_s);
     let head = SettingHead {
         seed: key(campaign.seed),
@@ -119,13 +162,15 @@ pub(crate) fn setting(
         first_channel: word(part.channels.start),
         h: [h.sixth, h.third, h.half, h.whole],
     };
-    let plant: UavWords = match part.plant {
-        PlantKind::Axis => Axis::new(uav, part.channels.start).into(),
-        PlantKind::Attitude => Attitude::new(uav).into(),
-        PlantKind::Thrust | PlantKind::Leg => Thrust::new(uav).into(),
-    };
     let mut bytes = bytemuck::bytes_of(&head).to_vec();
-    bytes.extend(bytemuck::bytes_of(&plant));
+    bytes.extend(match &campaign.agent {
+        Agent::Uav(uav) => match part.plant {
+            PlantKind::Axis => Axis::new(uav, part.channels.start).bytes(),
+            PlantKind::Attitude => Attitude::new(uav).bytes(),
+            _ => Thrust::new(uav).bytes(),
+        },
+        Agent::Biped(biped) => leg(biped, part).bytes(),
+    });
     for channel in part.channels.clone() {
         let verdict = &campaign.verdict;
         let limits = Limits::<f32>::new(verdict.max_error[channel], verdict.settled_error[channel]);
@@ -136,13 +181,19 @@ pub(crate) fn setting(
             0.0,
         ]));
     }
-    let gains = match part.plant {
-        PlantKind::Axis | PlantKind::Leg => &controller.gains[..1],
-        PlantKind::Attitude => &controller.gains[1..],
-        PlantKind::Thrust => &controller.gains,
-    };
-    for gains in gains {
-        bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
+    for (group, gains) in campaign.channel_groups().iter().zip(&controller.gains) {
+        if part
+            .channels
+            .clone()
+            .any(|channel| group.channels.contains(&channel))
+        {
+            bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
+        }
     }
     bytes
+}
+
+/// The leg that a part of a biped's episode is. Whether limits cut its commands is no matter of its constants.
+pub(crate) fn leg(biped: &Biped, part: &Part<f32>) -> Leg<f32, false> {
+    Leg::new(&biped.robot, part.channels.start / LEG_JOINTS)
 }

@@ -23,12 +23,25 @@ const BELOW: [&str; 6] = [
 ];
 /// The files of the UAV.
 const UAV: [&str; 1] = [include_str!("../../../shaders/plant_uav.wgsl")];
+/// The files of the biped.
+const BIPED: [&str; 2] = [
+    include_str!("../../../shaders/leg.wgsl"),
+    include_str!("../../../shaders/plant_biped.wgsl"),
+];
 /// The files that build on a plant.
 const ABOVE: [&str; 4] = [
     include_str!("../../../shaders/signal.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
     include_str!("../../../shaders/group.wgsl"),
     include_str!("../../../shaders/episode.wgsl"),
+];
+
+/// The plants, in their order.
+pub(crate) const PLANTS: [PlantKind; 4] = [
+    PlantKind::Axis,
+    PlantKind::Attitude,
+    PlantKind::Thrust,
+    PlantKind::Leg,
 ];
 
 /// States that the command filter adds to a channel under thrust: its angle and rate.
@@ -38,6 +51,10 @@ const FILTER_STATES: usize = 2;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) plant: PlantKind,
+    /// Constants of the plant's own, name and value: how the joints of a leg lie to each other.
+    pub(crate) plant_constants: Vec<(String, u32)>,
+    /// Whether limits cut the commands of a leg.
+    pub(crate) cut: bool,
     /// Channels of the group.
     pub(crate) channels: usize,
     /// Rows of each channel in the reference table.
@@ -120,10 +137,11 @@ impl Shape {
     /// The whole text.
     pub(crate) fn text(&self) -> String {
         let mut text = self.constants();
-        let plant = match self.plant {
-            PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust | PlantKind::Leg => UAV,
+        let plant: &[&str] = match self.plant {
+            PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust => &UAV,
+            PlantKind::Leg => &BIPED,
         };
-        for file in BELOW.into_iter().chain(plant).chain(ABOVE) {
+        for file in BELOW.iter().chain(plant).chain(&ABOVE) {
             text.push('\n');
             text.push_str(file);
         }
@@ -132,11 +150,11 @@ impl Shape {
 
     fn constants(&self) -> String {
         let mut text = Constants::default();
-        for (k, plant) in [PlantKind::Axis, PlantKind::Attitude, PlantKind::Thrust]
-            .into_iter()
-            .enumerate()
-        {
-            text.count(&format!("{plant:?}").to_uppercase(), k);
+        for plant in PLANTS {
+            text.count(&format!("{plant:?}").to_uppercase(), plant as usize);
+        }
+        for (name, value) in &self.plant_constants {
+            text.count(name, *value as usize);
         }
         text.name("PLANT", &format!("{:?}", self.plant).to_uppercase());
         text.count("NC", self.channels);
@@ -149,6 +167,7 @@ impl Shape {
         text.flag("COUPLED", self.coupled);
         text.flag("FTC", self.ftc);
         text.flag("LIMITED", self.limited());
+        text.flag("CUT", self.cut);
         text.flag("OBSERVER_MEASURED", self.observer_measured);
 
         text.count("OBSERVER", OBSERVER);
@@ -169,6 +188,7 @@ impl Shape {
             ("DEMAND", 2),
             ("REFERENCE_RATE", 3),
             ("COMMAND_GAIN", 3),
+            ("TORQUE", 3),
         ] {
             text.count(name, slot);
         }
