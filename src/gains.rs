@@ -1,20 +1,20 @@
 //! The gains that fly: synthesized, or from a file and verified the same way; and gains.json.
 
+mod file;
+
+pub use file::{ControllerFile, GainsFile};
+
 use crate::campaign::{
     ActuationKind, Agent, Campaign, CampaignError, ChannelGroup, Drawn, FTC, PID, PID_TUNED,
 };
 use crate::synthesis::{
-    Certificate, ChannelDesign, ChannelRole, ChannelSynthesis, Check, ControllerGains,
-    LoopAnalysis, LoopGains, SolverReport, SynthesisError, loop_gains, poles, synthesize, verify,
+    Certificate, ChannelDesign, ChannelSynthesis, Check, ControllerGains, LoopAnalysis, LoopGains,
+    SolverReport, SynthesisError, loop_gains, poles, synthesize,
 };
 use nalgebra::Complex;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// The version of the gains.json format.
-const FORMAT: u32 = 1;
 
 /// Why there are no gains to fly.
 #[derive(Debug, Error)]
@@ -104,54 +104,6 @@ pub struct Findings {
     pub solver: Vec<SolverReport>,
 }
 
-/// gains.json.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GainsFile {
-    /// Version of the format.
-    pub format: u32,
-    /// Where the numbers are from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// The designs that the gains belong to; not read.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub designs: Option<serde_json::Value>,
-    /// The controllers by name.
-    pub controllers: BTreeMap<String, ControllerFile>,
-}
-
-/// One controller of a gains.json.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ControllerFile {
-    /// Where the numbers are from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// Gains of a UAV's position channels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub position: Option<ControllerGains>,
-    /// Gains of a UAV's attitude channels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub attitude: Option<ControllerGains>,
-    /// Gains of a biped's joints.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub joints: Option<ControllerGains>,
-    /// What was found about them, by channel group; not read.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub findings: Option<serde_json::Value>,
-}
-
-impl ControllerFile {
-    /// The gains of the channels of a role.
-    fn of(&mut self, role: ChannelRole) -> &mut Option<ControllerGains> {
-        match role {
-            ChannelRole::Position => &mut self.position,
-            ChannelRole::Attitude => &mut self.attitude,
-            ChannelRole::Joints => &mut self.joints,
-        }
-    }
-}
-
 impl GainSet {
     /// Synthesizes, reads and verifies the gains of a campaign's controllers, and checks its step against them.
     ///
@@ -172,7 +124,9 @@ impl GainSet {
                 .map(|named| (&named.gains, &named.controller))
                 .or(source.gains.as_ref().map(|path| (path, name)));
             controllers.push(match (file, &synthesized) {
-                (Some((path, controller)), _) => from_file(campaign, name, path, controller, true)?,
+                (Some((path, controller)), _) => {
+                    file::controller(campaign, name, path, controller, true)?
+                }
                 (None, Some(synthesized)) => from_synthesis(campaign, name, synthesized)?,
                 (None, None) => {
                     let reason = format!("no gains for the controller {name:?}");
@@ -193,7 +147,7 @@ impl GainSet {
     /// # Errors
     /// If the file is unreadable or lacks a controller.
     pub fn read(campaign: &Campaign, path: &Path) -> Result<Self, GainsError> {
-        let read = |name: &String| from_file(campaign, name, path, name, false);
+        let read = |name: &String| file::controller(campaign, name, path, name, false);
         Ok(Self {
             controllers: campaign
                 .controllers
@@ -216,33 +170,7 @@ impl GainSet {
     /// The gains as a file.
     #[must_use]
     pub fn to_file(&self, campaign: &Campaign) -> GainsFile {
-        let groups = campaign.channel_groups();
-        let by_group = |values: Vec<serde_json::Value>| {
-            let names = groups.iter().map(|group| group.role.name().to_string());
-            serde_json::Value::Object(names.zip(values).collect())
-        };
-        let controllers = self.controllers.iter().map(|controller| {
-            let findings = controller.groups.iter().map(|group| json(&group.findings));
-            let mut file = ControllerFile {
-                source: Some(controller.source.clone()),
-                position: None,
-                attitude: None,
-                joints: None,
-                findings: Some(by_group(findings.collect())),
-            };
-            for (group, own) in groups.iter().zip(&controller.groups) {
-                *file.of(group.role) = Some(own.gains.clone());
-            }
-            (controller.name.clone(), file)
-        });
-        GainsFile {
-            format: FORMAT,
-            source: None,
-            designs: Some(by_group(
-                campaign.synthesis.designs.iter().map(json).collect(),
-            )),
-            controllers: controllers.collect(),
-        }
+        file::of(self, campaign)
     }
 
     /// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
@@ -306,11 +234,6 @@ fn plant_poles(campaign: &Campaign) -> Vec<(f64, &'static str)> {
         ),
         (filter, "the command filter"),
     ]
-}
-
-/// A value as JSON; these types have string keys and finite numbers, which always can be.
-fn json(value: &impl Serialize) -> serde_json::Value {
-    serde_json::to_value(value).unwrap_or_default()
 }
 
 /// The longest step at which the classical Runge-Kutta method damps a mode that decays.
@@ -409,89 +332,6 @@ fn from_synthesis(
         name: name.to_string(),
         source: "synthesized".into(),
         groups: groups.map(of_group).collect::<Result<_, _>>()?,
-    })
-}
-
-fn from_file(
-    campaign: &Campaign,
-    name: &str,
-    path: &Path,
-    controller: &str,
-    check: bool,
-) -> Result<FlyingController, GainsError> {
-    let broken = |reason: String| GainsError::File {
-        path: path.to_path_buf(),
-        reason,
-    };
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| broken(format!("cannot be read ({error}); name a gains.json")))?;
-    let mut file: GainsFile = serde_json::from_str(&text)
-        .map_err(|error| broken(format!("{error}; write it as the gains.json of a run")))?;
-    if file.format != FORMAT {
-        return Err(broken(format!(
-            "format = {}: this program reads format {FORMAT}; run the campaign that made the file again",
-            file.format
-        )));
-    }
-    let Some(mut found) = file.controllers.remove(controller) else {
-        let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
-        return Err(broken(format!(
-            "controllers.{controller}: absent, the file has {}; add it or name one of these",
-            known.join(", ")
-        )));
-    };
-    let mut of_group = |(group, design): (ChannelGroup, &ChannelDesign)| {
-        let role = group.role.name();
-        let gains = found.of(group.role).take().ok_or_else(|| {
-            broken(format!(
-                "controllers.{controller}.{role}: absent; add it, or name gains that were made for {}",
-                campaign.agent.plural()
-            ))
-        })?;
-        let refused = |source| GainsError::Refused {
-            path: path.to_path_buf(),
-            controller: controller.to_string(),
-            role,
-            source: Box::new(source),
-        };
-        let loop_gains = integrable(design, &gains).map_err(refused)?;
-        let verified = if check {
-            Some(verify(design, &gains).map_err(refused)?)
-        } else {
-            None
-        };
-        let findings = verified.map(|verified| Findings {
-            analysis: verified.analysis,
-            certificate: verified.certificate,
-            checks: verified.checks,
-            solver: Vec::new(),
-        });
-        Ok::<_, GainsError>(ChannelController {
-            gains,
-            loop_gains,
-            findings,
-        })
-    };
-    let groups = campaign.channel_groups().into_iter();
-    let groups: Vec<ChannelController> = groups
-        .zip(&campaign.synthesis.designs)
-        .map(&mut of_group)
-        .collect::<Result<_, _>>()?;
-    let states = |group: &ChannelController| group.loop_gains.states;
-    if groups
-        .windows(2)
-        .any(|pair| states(&pair[0]) != states(&pair[1]))
-    {
-        let remedy = "give both fault estimates, or neither";
-        return Err(broken(format!(
-            "controllers.{controller}: position and attitude differ in kind; {remedy}"
-        )));
-    }
-    let source = format!("{} ({controller})", path.display());
-    Ok(FlyingController {
-        name: name.to_string(),
-        source,
-        groups,
     })
 }
 

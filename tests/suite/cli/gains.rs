@@ -141,7 +141,7 @@ fn a_gains_file_of_another_form_is_refused() {
             gains["controllers"]["ftc"]["attitude"] =
                 gains["controllers"]["pid"]["attitude"].clone();
         }),
-        &["controllers.ftc", "position and attitude differ in kind"],
+        &["controllers.ftc", "the channel groups differ in kind"],
     );
 }
 
