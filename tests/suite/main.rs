@@ -10,6 +10,7 @@
 //! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
 //! | `leg` | the fast dynamics of a leg on every lane type |
 //! | `walk` | the walking reference against an independent implementation |
+//! | `biped` | robots in the episode loop: against independent trajectories and formulas, at their limits, on every lane type |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
 //! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
 //! | `flight` | flights whose GPU fails |
@@ -34,6 +35,7 @@
 mod cli;
 mod common;
 
+mod biped;
 mod campaigns;
 mod determinism;
 mod flight;
