@@ -9,7 +9,7 @@ fn hurried(actuation: &str) -> Campaign {
     altered(
         "biped-ground-reaction",
         &[
-            ("limited", &format!("\"{actuation}\"")),
+            ("\"limited\"", &format!("\"{actuation}\"")),
             ("episodes = 512", "episodes = 4"),
             ("duration_s = 9.0", "duration_s = 2.0"),
             ("std = 0.001", "std = 0.1"),
