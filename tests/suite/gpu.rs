@@ -3,7 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `agreement` | the comparison of flights with the CPU's |
-//! | `parity` | every kind of campaign against double and single precision on the CPU |
+//! | `parity`, `bipeds` | every kind of campaign against double and single precision on the CPU |
 //! | `mutations` | changed shaders and gains, each of which that comparison must notice |
 //! | `determinism` | the same bits for any batch, span of steps, order and company |
 //! | `failures` | lost devices, shaders that do not compile, too little memory, too large teams |
@@ -11,6 +11,7 @@
 //! Without an adapter these tests print SKIPPED, unless URTS_REQUIRE_GPU=1 asks for one.
 
 mod agreement;
+mod bipeds;
 mod determinism;
 mod failures;
 mod mutations;
@@ -19,21 +20,38 @@ mod parity;
 use crate::common::repository;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Agent, Campaign};
 use urts_mc::synthesis::LoopGains;
 
 /// Gains of every controller on every channel group.
 type Gains = Vec<Vec<LoopGains>>;
 
-/// Everything at once: tests/suite/gpu/mixed.toml, with parts of its text replaced; each part must be there.
-fn mixed(changes: &[(&str, &str)]) -> Campaign {
-    let path = repository("tests/suite/gpu/mixed.toml");
+/// A campaign of tests/suite/gpu with parts of its text replaced; each part must be there.
+fn replaced(name: &str, changes: &[(&str, &str)]) -> Campaign {
+    let path = repository(&format!("tests/suite/gpu/{name}.toml"));
     let mut text = std::fs::read_to_string(&path).unwrap();
     for (old, new) in changes {
-        assert!(text.contains(old), "mixed.toml does not contain {old:?}");
+        assert!(text.contains(old), "{name}.toml does not contain {old:?}");
         text = text.replace(old, new);
     }
     Campaign::parse(&text, &path).unwrap()
+}
+
+/// Everything at once.
+fn mixed(changes: &[(&str, &str)]) -> Campaign {
+    replaced("mixed", changes)
+}
+
+/// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are not.
+fn mixed_biped(changes: &[(&str, &str)]) -> Campaign {
+    let mut campaign = replaced("mixed_biped", changes);
+    if let Agent::Biped(biped) = &mut campaign.agent {
+        let joints = biped.robot.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+        for (j, joint) in (1_u8..).zip(joints) {
+            joint.damping_n_m_s = 0.02 * f64::from(j);
+        }
+    }
+    campaign
 }
 
 /// [`mixed`] with thrust along the body axis.

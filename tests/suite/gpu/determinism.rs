@@ -1,6 +1,6 @@
 //! The same bits, whatever the batch, the span of steps, the order and the company.
 
-use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed};
+use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed, mixed_biped};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{GpuFlyer, Tuning};
@@ -56,6 +56,21 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
     other.seed += 1;
     let other = digits(&fly(&gpu, &other, &gains, Tuning::default()));
     assert!(other.iter().zip(&all).all(|(other, own)| other != own));
+}
+
+#[test]
+fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let controllers = ("\"ftc\", \"pid\"", "\"pid\"");
+    let campaign = mixed_biped(&[controllers]);
+    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    assert_eq!(all.len(), 16);
+    assert!(all.iter().any(|flown| flown.contains("diverged: true")));
+    for (batch, steps) in [(Some(5), Some(100)), (None, Some(13))] {
+        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
+    }
 }
 
 #[test]

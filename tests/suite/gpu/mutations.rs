@@ -2,7 +2,7 @@
 //! shows nothing.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
-use super::{ALIKE, BRIEF, Gains, fly_all, mixed, mixed_thrust};
+use super::{ALIKE, BRIEF, Gains, fly_all, mixed, mixed_biped, mixed_thrust};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
@@ -33,8 +33,8 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "agents push where they should pull",
-        "fma(others * own.kappa, position, force)",
-        "fma(others * -own.kappa, position, force)",
+        "fma(others * own.kappa, position, disturbance)",
+        "fma(others * -own.kappa, position, disturbance)",
     ),
     (
         "the last agent pulls at nobody",
@@ -158,6 +158,105 @@ const THRUST: [Mutation; 8] = [
     ),
 ];
 
+/// Noticed of bipeds within their limits.
+const BIPED: [Mutation; 19] = [
+    (
+        "a joint has the limit of the next",
+        "max_torque[own.channel / 4u][own.channel % 4u]",
+        "max_torque[own.channel / 4u][(own.channel + 1u) % 4u]",
+    ),
+    (
+        "a joint shows a little more than it demands",
+        "publish(stage, DEMAND, inputs.feedback);",
+        "publish(stage, DEMAND, inputs.feedback * 1.001);",
+    ),
+    (
+        "two columns of a matrix change places",
+        "near.w, far.x, far.y)",
+        "near.w, far.y, far.x)",
+    ),
+    (
+        "a joint hears another instead of its neighbour",
+        "fma(seen(stage, factors, 4u), row[4], sum)",
+        "fma(seen(stage, factors, 3u), row[4], sum)",
+    ),
+    (
+        "the matrix stays as it was when the dispatch began",
+        "matrix_row(at, 1u), DEMAND)",
+        "matrix_row(reference_at(0u), 1u), DEMAND)",
+    ),
+    (
+        "torques may be a little larger",
+        "let limit = own.plant.max_torque;",
+        "let limit = own.plant.max_torque * 1.001;",
+    ),
+    (
+        "torques may be as large as they like",
+        "select(wanted, limited, CUT)",
+        "wanted",
+    ),
+    (
+        "what limits take counts as given",
+        "let excess = wanted - limited;",
+        "let excess = limited - wanted;",
+    ),
+    (
+        "no torque is lost",
+        "let command = fma(demanded, command_gain, command_bias);",
+        "let command = demanded + command_bias;",
+    ),
+    (
+        "the ground pulls where it pushes",
+        "fma(ground, table[at.place + 2u].z, inputs.force)",
+        "fma(-ground, table[at.place + 2u].z, inputs.force)",
+    ),
+    (
+        "every robot is as heavy as its model",
+        "(command + force) * own.inverse_inertia",
+        "command + force",
+    ),
+    (
+        "the last episode of a workgroup does not move",
+        "if own.channel == 0u {",
+        "if own.channel == 0u && own.lane < LANES - 1u {",
+    ),
+    (
+        "the observer is not told of torques beyond the limit",
+        "told = inputs.feedback - plus_product(",
+        "told = inputs.feedback - 0.0 * plus_product(",
+    ),
+    (
+        "the error accelerates as the joint does",
+        "acceleration - at.row.z, told",
+        "acceleration, told",
+    ),
+    (
+        "two joints change accelerations",
+        "TORQUE, 3u, own.agent)] = acceleration[3]",
+        "TORQUE, 3u, own.agent)] = acceleration[2]",
+    ),
+    (
+        "joints are not damped",
+        "fma(rate, -joint.lever.w, torque)",
+        "torque",
+    ),
+    (
+        "gravity is off by a thousandth",
+        "let across = model.pelvis.x;",
+        "let across = model.pelvis.x * 1.001;",
+    ),
+    (
+        "a rotor weighs nothing",
+        "p22.moment.z + j2.angle.y",
+        "p22.moment.z",
+    ),
+    (
+        "the torque of an ankle does not reach the knee",
+        "b3210 = fma(l5, vec4(-b5), b3210);",
+        "",
+    ),
+];
+
 /// A campaign on which mutations must show, flown by the fault-tolerant controller.
 struct Ground {
     campaign: Campaign,
@@ -248,6 +347,17 @@ fn mutations_under_thrust_are_noticed() {
         ),
     ];
     Ground::new(mixed_thrust(&[&BRIEF[..], &GENTLE, &own].concat())).notices(&gpu, &THRUST);
+}
+
+#[test]
+fn mutations_of_bipeds_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let controllers = ("\"ftc\", \"pid\"", "\"ftc\"");
+    let kappa = (
+        "[0.0, 10.0, 4000.0], weights = [2.0, 2.0, 1.0]",
+        "[0.0, 10.0]",
+    );
+    Ground::new(mixed_biped(&[controllers, kappa])).notices(&gpu, &BIPED);
 }
 
 #[test]

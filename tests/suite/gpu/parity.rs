@@ -12,7 +12,7 @@ use urts_mc::gains::GainSet;
 use urts_mc::model::Shown;
 
 /// Flies a campaign and demands agreement, in double and in single precision; none without an adapter.
-fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
+pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
     let gpu = gpu_or_skip()?;
     let gains = GainSet::obtain(campaign).unwrap().loops();
     let flown = fly(&gpu, campaign, &gains, Tuning::default());
@@ -187,7 +187,7 @@ const QUANTITIES: [Quantity; 9] = [
 
 /// Follows some episodes of a campaign, every 20 ms, and demands that they agree with double precision and end as they do in
 /// a flight of all episodes; returns how many flights were followed to the end.
-fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
+pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
     let gains: Gains = GainSet::obtain(campaign).unwrap().loops();
     let mut flyer = GpuFlyer::new(gpu, campaign, &gains, Tuning::default()).unwrap();
     let cpu = Cpu::new(campaign, &gains, Precision::F64, None);

@@ -1,0 +1,101 @@
+//! Bipeds: every episode, controller, agent and joint is compared with the CPU, as those of UAVs are.
+
+use super::mixed_biped;
+use super::parity::{agreement, followed};
+use crate::common::{altered, gpu_or_skip};
+use urts_mc::backend::cpu::Precision;
+use urts_mc::backend::gpu::Tuning;
+use urts_mc::cross_check::cross_check;
+use urts_mc::flight::{Backend, Settings, fly};
+use urts_mc::gains::GainSet;
+
+/// One controller of [`mixed_biped`].
+const FTC: (&str, &str) = ("\"ftc\", \"pid\"", "\"ftc\"");
+
+#[test]
+fn val_everything_at_once_agrees_for_bipeds_within_their_limits() {
+    let Some([double, single]) = agreement(&mixed_biped(&[])) else {
+        return;
+    };
+    assert!(double.compared > 4 && single.compared > 10);
+    assert!(single.exceeded > 4 && single.diverged > 4 && single.saturated > 4);
+}
+
+#[test]
+fn val_everything_at_once_agrees_for_bipeds_without_limits() {
+    let campaign = mixed_biped(&[("\"limited\"", "\"full\""), FTC]);
+    let Some([double, single]) = agreement(&campaign) else {
+        return;
+    };
+    // What limits would cut is counted.
+    assert!(double.compared > 4 && single.compared > 10 && single.saturated > 4);
+}
+
+#[test]
+fn val_bipeds_that_fly_well_under_both_controllers_agree() {
+    // One more than a workgroup holds of a team of four.
+    let campaign = altered(
+        "biped-paper",
+        &[
+            ("episodes = 1024", "episodes = 9"),
+            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\", \"pid\""),
+            ("duration_s = 10.0", "duration_s = 0.6"),
+            ("settle_s = 2.0", "settle_s = 0.2"),
+            ("start_s = 0.0", "start_s = -3.0"),
+            ("uniform = [5.0, 15.0]", "uniform = [0.1, 0.3]"),
+            ("std = 0.1", "std = 0.001"),
+            ("uniform = [0.01, 0.1]", "uniform = [0.0001, 0.001]"),
+            ("max_error = 0.5 ", "max_error = 2.0 "),
+            ("max_rmse = 0.25", "max_rmse = 1.0"),
+            (
+                "[[require]]\ncontroller = \"ftc\"\nfailure_rate_upper_95 = 0.02",
+                "",
+            ),
+        ],
+    );
+    let Some([double, _]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared > 9);
+}
+
+#[test]
+fn val_another_robot_agrees() {
+    let campaign = altered(
+        "biped-berkeley",
+        &[
+            ("episodes = 128", "episodes = 4"),
+            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
+            ("duration_s = 10.0", "duration_s = 0.6"),
+            ("settle_s = 2.0", "settle_s = 0.2"),
+            ("kind = \"walk\"", "kind = \"walk\"\nstart_s = -2.0"),
+        ],
+    );
+    let Some([double, _]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared == 4);
+}
+
+#[test]
+fn val_trajectories_of_bipeds_agree_at_every_sample_and_end_as_flights_do() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    assert!(followed(&gpu, &mixed_biped(&[FTC]), &[15, 0, 7, 4, 12]) > 2);
+}
+
+#[test]
+fn a_run_of_bipeds_passes_its_cross_check() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let campaign = mixed_biped(&[FTC]);
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let settings = Settings {
+        backend: Backend::Gpu { adapter: None },
+        tuning: Tuning::default(),
+        ..Settings::cpu(Precision::F32)
+    };
+    let flight = fly(&campaign, &gains, &settings, Some(&gpu), &|_| ()).unwrap();
+    let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
+    let check = cross_check(&campaign, &gains, &settings, leg, scores, Some(&gpu), 8).unwrap();
+    println!("{check:?}");
+    assert!(check.holds() && check.compared > 2, "{check:?}");
+}
