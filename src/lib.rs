@@ -5,7 +5,7 @@
 //! and values move forward only:
 //!
 //! ```text
-//! campaign -> synthesis, gains -> reference -> draw -> backend (model | shaders) -> tables -> comparison (statistics) -> output
+//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables -> comparison (statistics) -> output
 //! ```
 //!
 //! # Invariants
@@ -30,6 +30,7 @@ pub mod reference;
 pub mod replay;
 pub mod robot;
 pub mod run;
+pub mod sampling;
 pub mod statistics;
 pub mod synthesis;
 pub mod tables;

@@ -48,6 +48,10 @@ pub enum Stream {
     Noise = 4,
     /// Which episodes a run is checked by.
     CrossCheck = 5,
+    /// Where the points of a sampling design lie.
+    Design = 6,
+    /// Permutations of episodes in tests.
+    Permutation = 7,
 }
 
 /// Where a random number lives inside its campaign's seed.

@@ -1,7 +1,8 @@
 //! Statistics of a campaign: what the verdicts and metrics of its episodes say about the controllers.
 //!
-//! The sample unit is the episode, and the episodes are independent draws; every function here is
-//! pure, deterministic and free of random numbers. A diverged episode carries a metric of `+inf`
+//! The sample unit is the episode, and the episodes are independent draws ([`sampling`](crate::sampling)
+//! says what other designs allow); every function here is pure and deterministic, and the only
+//! random numbers, permutations, are addressed by a seed. A diverged episode carries a metric of `+inf`
 //! (it ranks worst), so ranks decide wherever a mean would not survive it. No function returns
 //! NaN: where nothing can be said the answer is `None` or the widest interval.
 //!
@@ -13,21 +14,43 @@
 //! | does A fail less often than B? | [`mcnemar_mid_p`], [`paired_difference`] | mid-p, Tango's score |
 //! | by how much is A's metric better? | [`median_bca`] | BCa with the ideal bootstrap |
 //! | in which share of episodes is A better? | [`win_rate`] | Tango's score |
+//! | how many runs does a claim need? | [`runs_needed`], [`failures_allowed`], [`power`] | exact binomial |
+//! | may a run stop as soon as it is proved? | [`sequential_proof`], [`sequential_interval`] | confidence sequence |
+//! | which parameter matters? | [`effects`], [`spearman`], [`somers_d`] | ranks, permutations |
+//! | which of many effects are real? | [`holm`] | Holm's step-down |
+//! | what do replicates of a design say? | [`replicate_mean`] | Student's t |
 //!
 //! Counts beyond their total are read as the total. A `level` is a two-sided confidence level in
 //! (0, 1) unless a function says otherwise; any other level is a demand for certainty, which only
 //! the widest interval (or `None`) meets.
 
 mod binomial;
+mod correlation;
+mod effect;
+mod holm;
 mod median;
 mod paired;
 mod proportion;
 mod quantile;
+mod rank;
+mod replicates;
+mod sample_size;
+mod sequential;
+mod student;
 
+pub use correlation::{somers_d, spearman};
+pub use effect::{Effect, Outcome, Permutations, effects};
+pub use holm::holm;
 pub use median::median_bca;
 pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval};
+pub use rank::Ranked;
+pub use replicates::replicate_mean;
+pub use sample_size::{failures_allowed, power, runs_needed};
+pub use sequential::{
+    Proof, sequential_interval, sequential_lower, sequential_proof, sequential_upper,
+};
 
 /// A confidence interval; both ends belong to it.
 #[derive(Debug, Clone, Copy, PartialEq)]

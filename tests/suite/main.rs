@@ -6,6 +6,7 @@
 //! | `synthesis` | gains, certificates and margins against an independent implementation |
 //! | `lapack` | the linear algebra under the solver against nalgebra |
 //! | `statistics` | estimators against published values, and their coverage |
+//! | `sampling` | designs: balance, independence, what they gain and allow |
 //! | `path` | the waypoint reference |
 //! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
 //! | `leg` | the fast dynamics of a leg on every lane type |
@@ -46,6 +47,7 @@ mod leg;
 mod model;
 mod path;
 mod robot;
+mod sampling;
 mod scenarios;
 mod statistics;
 mod synthesis;

@@ -1,5 +1,6 @@
 //! Statistics against printed tables and SciPy. The reference numbers, their sources and their
-//! tolerances are in `golden/statistics.json`. Coverage and properties are in the submodules.
+//! tolerances are in `golden/statistics.json` and `golden/planning_and_effects.json`. Coverage and
+//! properties are in the submodules.
 
 use serde_json::Value;
 use urts_mc::statistics::{
@@ -8,13 +9,23 @@ use urts_mc::statistics::{
 };
 
 mod coverage;
+mod effect;
+mod effect_level;
+mod level;
 mod median;
+mod planning;
 mod properties;
+mod random;
+mod sequential;
 
 fn golden(group: &str) -> Value {
-    let text = include_str!("../golden/statistics.json");
-    let mut all: Value = serde_json::from_str(text).unwrap();
-    all[group].take()
+    let texts = [
+        include_str!("../golden/statistics.json"),
+        include_str!("../golden/planning_and_effects.json"),
+    ];
+    let files = texts.map(|text| serde_json::from_str::<Value>(text).unwrap());
+    let found = files.iter().find_map(|file| file.get(group));
+    found.unwrap().clone()
 }
 
 /// Calls `compare` with each case of a group and a check of one of its numbers.

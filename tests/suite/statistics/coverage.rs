@@ -27,7 +27,7 @@ fn binomial_distribution(n: usize, p: f64) -> Vec<f64> {
 }
 
 /// Exact probability that the interval of a binomial count holds the true rate.
-fn coverage(intervals: &[Interval], rate: f64) -> f64 {
+pub(super) fn coverage(intervals: &[Interval], rate: f64) -> f64 {
     let distribution = binomial_distribution(intervals.len() - 1, rate);
     let covered = intervals.iter().zip(distribution);
     covered
@@ -36,7 +36,7 @@ fn coverage(intervals: &[Interval], rate: f64) -> f64 {
         .sum()
 }
 
-fn for_all_counts(n: u64, interval: impl Fn(u64) -> Interval) -> Vec<Interval> {
+pub(super) fn for_all_counts(n: u64, interval: impl Fn(u64) -> Interval) -> Vec<Interval> {
     (0..=n).map(interval).collect()
 }
 

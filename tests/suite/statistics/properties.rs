@@ -167,7 +167,7 @@ fn win_rate_without_ties_is_wilson_and_ties_reduce_its_width_as_its_variance() {
     assert!(0.45 < tied.lower && tied.lower < 0.5 && 0.5 < tied.upper && tied.upper < 0.55);
 }
 
-fn proptest_config() -> ProptestConfig {
+pub(super) fn proptest_config() -> ProptestConfig {
     ProptestConfig {
         cases: 300,
         rng_seed: RngSeed::Fixed(2026),
