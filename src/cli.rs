@@ -40,6 +40,8 @@ enum Command {
     Synthesize(SynthesizeArguments),
     /// Fly one episode of a run again and write its trajectories
     Replay(ReplayArguments),
+    /// Tell how many episodes a claim about a failure rate needs
+    Plan(PlanArguments),
     /// List the GPUs, and what --backend auto makes of them
     Devices(DevicesArguments),
     /// Print the JSON Schema of the campaign file
@@ -101,6 +103,32 @@ struct CheckArguments {
     /// Print as JSON
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Debug, Args)]
+struct PlanArguments {
+    /// The failure rate to stay below, between 0 and 1
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = share)]
+    failure_rate: f64,
+    /// How sure the claim is to be, between 0 and 1
+    #[arg(long, default_value_t = 0.95, allow_negative_numbers = true, value_parser = share)]
+    confidence: f64,
+    /// Up to how many failures are listed
+    #[arg(long, default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1000))]
+    failures: u64,
+    /// Print as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A number between 0 and 1.
+fn share(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_string())?;
+    if 0.0 < number && number < 1.0 {
+        Ok(number)
+    } else {
+        Err("must lie between 0 and 1, such as 0.01 for one percent".to_string())
+    }
 }
 
 #[derive(Debug, Args)]
@@ -175,6 +203,7 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
         Command::Check(arguments) => check_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
+        Command::Plan(arguments) => plan_command(&arguments),
         Command::Devices(arguments) => devices_command(&arguments),
         Command::Schema => {
             print_json(&Campaign::schema())?;
@@ -286,6 +315,21 @@ impl RunArguments {
             tuning: Tuning::default(),
         })
     }
+}
+
+fn plan_command(arguments: &PlanArguments) -> Result<Code, Failure> {
+    let PlanArguments {
+        failure_rate,
+        confidence,
+        failures,
+        json,
+    } = *arguments;
+    if json {
+        print_json(&show::runs_json(failure_rate, confidence, failures))?;
+    } else {
+        print(&show::runs(failure_rate, confidence, failures))?;
+    }
+    Ok(Code::Done)
 }
 
 fn devices_command(arguments: &DevicesArguments) -> Result<Code, Failure> {

@@ -312,7 +312,7 @@ fn estimate(
 }
 
 /// Where the values of some channels of a team's episode lie in a list of [`Scores`].
-struct Layout {
+pub(crate) struct Layout {
     team: usize,
     /// Channels of an agent.
     width: usize,
@@ -320,7 +320,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(campaign: &Campaign, channels: Range<usize>) -> Self {
+    pub(crate) fn new(campaign: &Campaign, channels: Range<usize>) -> Self {
         Self {
             team: campaign.team,
             width: campaign.channels().len(),
@@ -399,42 +399,22 @@ fn ratio(
     name: Arc<str>,
     layout: &Layout,
 ) -> Ratio {
+    let log_ratios = log_ratios(scores, [a, b], layout);
     let (mut wins, mut losses, mut ties, mut diverged) = (0, 0, 0, [0; 3]);
-    let log_ratios: Vec<f64> = (0..episodes(scores))
-        .map(|episode| {
-            let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
-            let log_ratio = match (gone(a), gone(b)) {
-                (true, true) => {
-                    diverged[2] += 1;
-                    0.0
-                }
-                (true, false) => {
-                    diverged[0] += 1;
-                    f64::NEG_INFINITY
-                }
-                (false, true) => {
-                    diverged[1] += 1;
-                    f64::INFINITY
-                }
-                (false, false) => {
-                    let pairs = layout
-                        .of(&scores.rmse[a], episode)
-                        .zip(layout.of(&scores.rmse[b], episode));
-                    let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
-                        (sum + log_ratio_of(of_a, of_b), count + 1.0)
-                    });
-                    // One perfect channel each: neither is better.
-                    if sum.is_nan() { 0.0 } else { sum / count }
-                }
-            };
-            match log_ratio.total_cmp(&0.0) {
-                _ if log_ratio == 0.0 => ties += 1,
-                std::cmp::Ordering::Greater => wins += 1,
-                _ => losses += 1,
-            }
-            log_ratio
-        })
-        .collect();
+    for (episode, &log_ratio) in log_ratios.iter().enumerate() {
+        match log_ratio.total_cmp(&0.0) {
+            _ if log_ratio == 0.0 => ties += 1,
+            std::cmp::Ordering::Greater => wins += 1,
+            std::cmp::Ordering::Less | std::cmp::Ordering::Equal => losses += 1,
+        }
+        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        match (gone(a), gone(b)) {
+            (true, false) => diverged[0] += 1,
+            (false, true) => diverged[1] += 1,
+            (true, true) => diverged[2] += 1,
+            (false, false) => {}
+        }
+    }
     Ratio {
         scope,
         name,
@@ -442,6 +422,39 @@ fn ratio(
         win_rate: win_rate(wins, losses, ties, LEVEL),
         diverged,
     }
+}
+
+/// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them diverged,
+/// 0 where both did.
+pub(crate) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
+    let of_episode = |episode: usize| {
+        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        match (gone(a), gone(b)) {
+            (true, true) => 0.0,
+            (true, false) => f64::NEG_INFINITY,
+            (false, true) => f64::INFINITY,
+            (false, false) => {
+                let pairs = layout
+                    .of(&scores.rmse[a], episode)
+                    .zip(layout.of(&scores.rmse[b], episode));
+                let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
+                    (sum + log_ratio_of(of_a, of_b), count + 1.0)
+                });
+                // One perfect channel each: neither is better.
+                if sum.is_nan() { 0.0 } else { sum / count }
+            }
+        }
+    };
+    (0..episodes(scores)).map(of_episode).collect()
+}
+
+/// RMS error of each episode over the team and the channels; infinite where an agent diverged.
+pub(crate) fn team_rmse(scores: &Scores, controller: usize, layout: &Layout) -> Vec<f64> {
+    let of_episode = |episode: usize| match scores.status[controller][episode] {
+        Status::Diverged => f64::INFINITY,
+        _ => root_mean_square(layout.of(&scores.rmse[controller], episode)),
+    };
+    (0..episodes(scores)).map(of_episode).collect()
 }
 
 /// ln(b / a).

@@ -1,11 +1,12 @@
-//! Monte Carlo robustness evaluation of fault-tolerant controllers for teams of UAVs.
+//! Monte Carlo robustness evaluation of fault-tolerant controllers for teams of UAVs or bipeds.
 //!
 //! A campaign file says which closed loop flies, what disturbs it and what counts as failure; a run flies every episode under
 //! every controller on the same draws and compares the controllers pair by pair. The modules are in the order of the flow,
 //! and values move forward only:
 //!
 //! ```text
-//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables -> comparison (statistics) -> output
+//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables
+//!          -> comparison, ranking (statistics) -> output
 //! ```
 //!
 //! # Invariants
@@ -19,6 +20,7 @@
 pub mod backend;
 pub mod campaign;
 pub mod comparison;
+pub mod conditions;
 pub mod cross_check;
 pub mod draw;
 pub mod flight;
@@ -26,6 +28,7 @@ pub mod gains;
 pub mod manifest;
 pub mod model;
 pub mod output;
+pub mod ranking;
 pub mod reference;
 pub mod replay;
 pub mod robot;

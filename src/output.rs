@@ -9,6 +9,16 @@ use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
+/// The tables of a run; not every run writes all of them.
+pub const TABLES: [&str; 6] = [
+    "episodes",
+    "channels",
+    "summary",
+    "comparison",
+    "ranking",
+    "worst",
+];
+
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
 /// File name of the manifest, which is written last: a directory that has one holds all episodes that it counts.
@@ -229,12 +239,18 @@ impl OutputDir {
             let name = name.to_string_lossy();
             let replay = name.starts_with("replay-") && name.ends_with(".parquet");
             let half = name.starts_with('.') && name.ends_with(".part");
-            if replay || half || ["episodes.csv", "channels.csv"].contains(&&*name) {
+            if replay || half || is_table(&name) {
                 remove(entry.path())?;
             }
         }
         Ok(())
     }
+}
+
+/// Whether a file is a table that some run writes.
+fn is_table(name: &str) -> bool {
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
 }
 
 /// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
@@ -244,11 +260,7 @@ fn holds_only_ours(dir: &Path) -> bool {
             .strip_prefix('.')
             .and_then(|name| name.strip_suffix(".part"))
             .unwrap_or(name);
-        let (stem, extension) = whole.rsplit_once('.').unwrap_or((whole, ""));
-        match extension {
-            "parquet" | "csv" => ["episodes", "channels", "summary", "comparison"].contains(&stem),
-            _ => whole == "gains.json",
-        }
+        is_table(whole) || whole == "gains.json"
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

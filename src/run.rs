@@ -8,6 +8,7 @@ use crate::flight::{Engine, Flight, FlightError, Settings, fly, open};
 use crate::gains::{GainSet, GainsError};
 use crate::manifest::{GIT_REVISION, Manifest, campaign_hash};
 use crate::output::{MANIFEST, OutputDir, OutputError};
+use crate::ranking::{self, RankedCondition, WorstEpisode};
 use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
@@ -51,6 +52,10 @@ pub struct Findings<'a> {
     pub summary: Vec<MetricQuantiles>,
     /// How every pair compares.
     pub comparisons: Vec<PairedComparison>,
+    /// What each condition does to each controller and pair.
+    pub ranking: Vec<RankedCondition>,
+    /// The worst episodes of each controller.
+    pub worst: Vec<WorstEpisode>,
     /// Requirements that do not hold.
     pub unmet: Vec<(&'a Requirement, FailureRate)>,
     /// How it was found.
@@ -138,19 +143,27 @@ pub fn run_on<'a>(
     let summary = comparison::summarise(campaign, &tables.scores);
     let comparisons = comparison::compare(campaign, &tables.scores);
     let unmet = comparison::unmet(campaign, &tables.scores);
+    let ranking = flight
+        .pool
+        .install(|| ranking::rank(campaign, &tables.scores));
+    let worst = ranking::worst(campaign, &tables.scores);
     times.statistics_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
     out.begin()?;
     let summary_table = comparison::summary_table(&summary);
     let comparison_table = comparison::comparison_table(&comparisons);
+    let ranking_table = ranking::ranking_table(&ranking);
+    let worst_table = ranking::worst_table(&worst);
     for (name, table, with_csv) in [
         ("episodes", &tables.episodes, extras.csv),
         ("channels", &tables.channels, extras.csv),
         ("summary", &summary_table, true),
         ("comparison", &comparison_table, true),
+        ("ranking", &ranking_table, true),
+        ("worst", &worst_table, true),
     ] {
-        // One controller has nothing to be compared with.
+        // One controller has nothing to be compared with; where nothing varies, nothing is ranked.
         if table.is_empty() {
             continue;
         }
@@ -187,6 +200,8 @@ pub fn run_on<'a>(
     Ok(Findings {
         summary,
         comparisons,
+        ranking,
+        worst,
         unmet,
         manifest,
     })

@@ -4,11 +4,13 @@ mod devices;
 mod findings;
 mod gains;
 mod plan;
+mod runs;
 
 pub(crate) use devices::devices;
 pub(crate) use findings::{findings, findings_json, shortcoming, unmet};
 pub(crate) use gains::{gains, synthesis};
 pub(crate) use plan::{plan, plan_json};
+pub(crate) use runs::{runs, runs_json};
 
 use std::fmt::Write;
 use std::path::Path;

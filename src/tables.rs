@@ -2,6 +2,7 @@
 
 use crate::backend::Flown;
 use crate::campaign::{Agent, Campaign, ChannelGroup, Time};
+use crate::conditions::{Condition, conditions};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
@@ -156,6 +157,8 @@ pub struct Scores {
     pub max_abs: Vec<Vec<f64>>,
     /// Whether an agent of the episode has the fault, `[fault][episode]`.
     pub fault_occurs: Vec<Vec<bool>>,
+    /// What each episode met: the name of a condition, and its size by episode ([`crate::conditions`]).
+    pub conditions: Vec<(String, Vec<Option<f64>>)>,
 }
 
 impl Scores {
@@ -202,6 +205,7 @@ impl Tables {
                 rmse: vec![Vec::new(); controllers],
                 max_abs: vec![Vec::new(); controllers],
                 fault_occurs: vec![Vec::new(); campaign.faults.len()],
+                conditions: Vec::new(),
             },
         }
     }
@@ -211,6 +215,14 @@ impl Tables {
         let draws = &flown.episode.agents;
         for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
             occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
+        }
+        let conditions = conditions(campaign, &flown.episode);
+        if self.scores.conditions.is_empty() {
+            let named = |(name, _): &Condition| (name.clone(), Vec::new());
+            self.scores.conditions = conditions.iter().map(named).collect();
+        }
+        for ((_, values), (_, value)) in self.scores.conditions.iter_mut().zip(conditions) {
+            values.push(value);
         }
         for (controller, (name, outcomes)) in self.names.iter().zip(&flown.outcomes).enumerate() {
             let agents: Vec<Judged<'_>> = outcomes

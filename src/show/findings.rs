@@ -4,15 +4,21 @@ use super::line;
 use serde_json::{Value, json};
 use std::path::Path;
 use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{FailureRate, PairedComparison, Ratio};
+use urts_mc::comparison::{FailureRate, LEVEL, PairedComparison, Ratio};
 use urts_mc::cross_check::{CrossCheck, ERROR_LIMIT, RMSE_LIMIT};
 use urts_mc::flight::{Engine, Leg};
+use urts_mc::ranking::RankedCondition;
 use urts_mc::run::Findings;
-use urts_mc::statistics::{Estimate, Interval};
+use urts_mc::statistics::{Estimate, Interval, runs_needed};
 use urts_mc::synthesis::ChannelRole;
 
 /// Channels that are shown one by one.
 const MOST_CHANNELS: usize = 6;
+
+/// Conditions that are shown of each target.
+const STRONGEST: usize = 3;
+/// The p-value, corrected for all conditions of a target, at or below which an effect is shown.
+const SURE: f64 = 0.05;
 
 /// The findings of a run at a glance.
 pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
@@ -159,6 +165,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             );
         }
     }
+    text.push_str(&what_matters(findings));
+    text.push_str(&worst(findings, out));
     let times = manifest.times;
     line(
         &mut text,
@@ -253,13 +261,12 @@ pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
             .position(|own| own == *requirement)
             .unwrap_or_default();
         let limit = requirement.failure_rate_upper_95;
-        let remedy = if rate.failed() == 0 && limit > 0.0 {
-            let enough = (0.05_f64.ln() / (-limit).ln_1p()).ceil();
-            format!("fly at least {enough} episodes")
-        } else if rate.rate() < limit {
-            "fly more episodes, or change the controller or the limit".to_string()
-        } else {
-            "change the controller or the limit".to_string()
+        let remedy = match runs_needed(limit, LEVEL, rate.failed()) {
+            Some(enough) if rate.failed() == 0 => format!("fly at least {enough} episodes"),
+            Some(enough) if rate.rate() < limit => format!(
+                "fly at least {enough} episodes, of which no more may fail, or change the controller or the limit"
+            ),
+            _ => "change the controller or the limit".to_string(),
         };
         format!(
             "{}: require[{index}].failure_rate_upper_95 = {limit}: {:?} failed in {} of {} episodes, so with 95 % \
@@ -272,6 +279,75 @@ pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
         )
     });
     unmet.collect::<Vec<_>>().join("\n")
+}
+
+/// What raises failures and errors of each controller, as far as it is sure.
+fn what_matters(findings: &Findings<'_>) -> String {
+    let sure: Vec<&RankedCondition> = findings
+        .ranking
+        .iter()
+        .filter(|ranked| ranked.target.kind != "log_ratio" && ranked.p_holm <= SURE)
+        .collect();
+    let mut text = String::new();
+    if sure.is_empty() {
+        return text;
+    }
+    line(
+        &mut text,
+        "\nwhat matters: rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
+    );
+    for same in sure.chunk_by(|a, b| a.target == b.target) {
+        let target = &same[0].target;
+        let about = target.group.map_or("failures".to_string(), str::to_string);
+        let strongest = same.iter().take(STRONGEST).map(|ranked| {
+            let trend = &ranked.effect.trend;
+            format!(
+                "{} {:+.2} [{:+.2}, {:+.2}]",
+                ranked.condition, trend.value, trend.interval.lower, trend.interval.upper
+            )
+        });
+        let strongest: Vec<String> = strongest.collect();
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {about:<9} {}",
+                target.controller,
+                strongest.join(", ")
+            ),
+        );
+    }
+    text
+}
+
+/// The worst episode of each controller, and how to see it.
+fn worst(findings: &Findings<'_>, out: &Path) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        "\nworst episode of each controller (worst.csv has ten)",
+    );
+    for worst in findings.worst.iter().filter(|worst| worst.rank == 1) {
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {}{}: urts-mc replay {} --episode {} --controller {}",
+                worst.controller,
+                worst.status.word(),
+                if worst.excess.is_finite() {
+                    format!(
+                        ", |e| up to {:.2} of the limit on {} of agent {}",
+                        worst.excess, worst.channel, worst.agent
+                    )
+                } else {
+                    String::new()
+                },
+                out.display(),
+                worst.episode,
+                worst.controller
+            ),
+        );
+    }
+    text
 }
 
 /// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and how many
@@ -375,6 +451,15 @@ pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
                 "scope": ratio.scope, "name": ratio.name, "log_ratio": estimate(ratio.log_ratio),
                 "win_rate": estimate(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
             })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "ranking": findings.ranking.iter().map(|ranked| json!({
+            "target": ranked.target.kind, "controller": ranked.target.controller, "against": ranked.target.against,
+            "group": ranked.target.group, "condition": ranked.condition, "episodes": ranked.effect.n,
+            "trend": estimate(Some(ranked.effect.trend)), "shape": ranked.effect.shape, "p_holm": ranked.p_holm,
+        })).collect::<Vec<_>>(),
+        "worst_episodes": findings.worst.iter().map(|worst| json!({
+            "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
+            "largest_error_over_limit": finite(worst.excess), "agent": worst.agent, "channel": *worst.channel,
         })).collect::<Vec<_>>(),
         "unmet_requirements": findings.unmet.iter().map(|(requirement, found)| json!({
             "controller": requirement.controller, "limit": requirement.failure_rate_upper_95, "found": rate(found),

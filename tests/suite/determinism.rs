@@ -184,8 +184,12 @@ fn same_bytes(campaign: &Campaign) {
             "episodes.csv",
             "episodes.parquet",
             "gains.json",
+            "ranking.csv",
+            "ranking.parquet",
             "summary.csv",
-            "summary.parquet"
+            "summary.parquet",
+            "worst.csv",
+            "worst.parquet"
         ]
     );
     for (threads, simd) in [(2, Simd::Avx2), (1, Simd::Avx512), (2, Simd::Avx512)] {

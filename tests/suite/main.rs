@@ -7,6 +7,7 @@
 //! | `lapack` | the linear algebra under the solver against nalgebra |
 //! | `statistics` | estimators against published values, and their coverage |
 //! | `sampling` | designs: balance, independence, what they gain and allow |
+//! | `ranking` | what the conditions of an episode do to its outcome |
 //! | `path` | the waypoint reference |
 //! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
 //! | `leg` | the fast dynamics of a leg on every lane type |
@@ -46,6 +47,7 @@ mod lapack;
 mod leg;
 mod model;
 mod path;
+mod ranking;
 mod robot;
 mod sampling;
 mod scenarios;

@@ -74,6 +74,8 @@ fn a_run_on_a_gpu_is_checked_recorded_and_replayed_there() {
         "channels.csv",
         "summary.csv",
         "comparison.csv",
+        "ranking.csv",
+        "worst.csv",
     ] {
         assert!(
             place.read_bytes(&format!("out/{file}")) == place.read_bytes(&format!("again/{file}")),

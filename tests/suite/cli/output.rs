@@ -9,15 +9,19 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 8] = [
+const FILES: [&str; 12] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
     "episodes.parquet",
     "gains.json",
     "manifest.json",
+    "ranking.csv",
+    "ranking.parquet",
     "summary.csv",
     "summary.parquet",
+    "worst.csv",
+    "worst.parquet",
 ];
 
 /// The names in a folder, hidden ones too.

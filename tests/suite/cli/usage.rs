@@ -166,3 +166,32 @@ fn output_that_cannot_be_printed_exits_with_1_and_a_reader_that_left_is_none() {
     let left = schema(writer.into());
     assert_eq!((left.status.code(), left.stderr.len()), (Some(0), 0));
 }
+
+#[test]
+fn plan_tells_the_episodes_that_a_claim_needs() {
+    let place = Place::smoke(&[]);
+    for (rate, episodes) in [
+        ("0.01", 299),
+        ("0.0027", 1109),
+        ("0.001", 2995),
+        ("0.0001", 29956),
+    ] {
+        let said = place.json(&[
+            "plan",
+            "--failure-rate",
+            rate,
+            "--confidence",
+            "0.95",
+            "--json",
+        ]);
+        let rows = said["rows"].as_array().unwrap();
+        assert_eq!(rows.len(), 6);
+        assert_eq!(rows[0]["episodes"], episodes);
+        assert!(rows[1]["episodes"].as_u64() > rows[0]["episodes"].as_u64());
+        let text = place.succeeds(&["plan", "--failure-rate", rate]);
+        assert!(text.contains(&format!(" {episodes} ")), "{text}");
+    }
+    for rate in ["0", "1", "-0.1", "nan", "1%"] {
+        place.refuses(&["plan", "--failure-rate", rate], 2, &["--failure-rate"]);
+    }
+}

@@ -1,0 +1,66 @@
+//! What an episode met, one number per quantity of the campaign: what the ranking relates to the outcomes.
+//!
+//! The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean square
+//! over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
+
+use crate::campaign::{Agent, Campaign};
+use crate::draw::{AgentDraw, Episode};
+
+/// A quantity and its size in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
+pub type Condition = (String, Option<f64>);
+
+/// The conditions of an episode, the same quantities in the same order for all episodes of a campaign.
+#[must_use]
+pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
+    let agents = &episode.agents;
+    let of_agents = |pick: &dyn Fn(&AgentDraw) -> f64| size(agents.iter().map(pick));
+    let of_channels = |pick: &dyn Fn(&AgentDraw) -> &Vec<f64>| {
+        size(agents.iter().flat_map(|draw| pick(draw).iter().copied()))
+    };
+    let mut all = vec![("mass_scale".to_string(), of_agents(&|draw| draw.mass_scale))];
+    if let Agent::Uav(_) = campaign.agent {
+        let scale = of_agents(&|draw| draw.inertia_scale);
+        all.push(("inertia_scale".to_string(), scale));
+    }
+    all.push(("kappa".to_string(), of_agents(&|draw| draw.kappa)));
+    let initial: [(&str, &dyn Fn(&AgentDraw) -> &Vec<f64>); 3] = [
+        ("error", &|draw| &draw.error),
+        ("error_rate", &|draw| &draw.error_rate),
+        ("error_integral", &|draw| &draw.error_integral),
+    ];
+    for (name, pick) in initial {
+        all.push((format!("initial_{name}"), of_channels(pick)));
+    }
+    for (index, disturbance) in campaign.disturbances.iter().enumerate() {
+        for (k, parameter) in disturbance.kind.parameters().iter().enumerate() {
+            let values = of_channels(&|draw| &draw.disturbances[index][k]);
+            all.push((format!("disturbance{index}_{}", parameter.name), values));
+        }
+    }
+    for (index, fault) in campaign.faults.iter().enumerate() {
+        let struck = || agents.iter().map(|draw| &draw.faults[index]);
+        let having = struck().filter(|fault| fault.occurs()).count();
+        all.push((format!("fault{index}_agents"), Some(having as f64)));
+        let onsets = struck().filter(|fault| fault.occurs());
+        let first = onsets.map(|fault| fault.onset_s).reduce(f64::min);
+        all.push((format!("fault{index}_onset_s"), first));
+        for (k, parameter) in fault.kind.parameters().iter().enumerate() {
+            let values = struck().flat_map(|fault| {
+                let of_channels = fault.parameters[k].iter().zip(&fault.strikes);
+                of_channels
+                    .filter(|(_, strikes)| **strikes)
+                    .map(|(value, _)| *value)
+            });
+            all.push((format!("fault{index}_{}", parameter.name), size(values)));
+        }
+    }
+    all
+}
+
+/// Root mean square; none of nothing.
+fn size(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| {
+        (sum + value * value, count + 1.0)
+    });
+    (count > 0.0).then(|| (sum / count).sqrt())
+}
