@@ -23,14 +23,10 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
         all.push(("inertia_scale".to_string(), scale));
     }
     all.push(("kappa".to_string(), of_agents(&|draw| draw.kappa)));
-    let initial: [(&str, &dyn Fn(&AgentDraw) -> &Vec<f64>); 3] = [
-        ("error", &|draw| &draw.error),
-        ("error_rate", &|draw| &draw.error_rate),
-        ("error_integral", &|draw| &draw.error_integral),
-    ];
-    for (name, pick) in initial {
-        all.push((format!("initial_{name}"), of_channels(pick)));
-    }
+    let mut initial = |name: &str, size: Option<f64>| all.push((format!("initial_{name}"), size));
+    initial("error", of_channels(&|draw| &draw.error));
+    initial("error_rate", of_channels(&|draw| &draw.error_rate));
+    initial("error_integral", of_channels(&|draw| &draw.error_integral));
     for (index, disturbance) in campaign.disturbances.iter().enumerate() {
         for (k, parameter) in disturbance.kind.parameters().iter().enumerate() {
             let values = of_channels(&|draw| &draw.disturbances[index][k]);
