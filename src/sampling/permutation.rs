@@ -3,7 +3,8 @@
 /// Rounds of the network: four would be enough for a few points of a large domain (Luby and Rackoff
 /// 1988, SIAM Journal on Computing 17:373-386); here all points of a small one are used.
 const ROUNDS: u32 = 8;
-/// Smallest domain, in bits: networks over fewer bits cannot make all permutations equally likely.
+/// Smallest domain, in bits: networks over 3 or 4 make some orders of a few numbers more likely than
+/// others.
 const FEWEST_BITS: u32 = 8;
 
 /// Where `index` goes under a permutation of `0..n`; `index` must be below `n`.

@@ -69,24 +69,44 @@ fn a_latin_hypercube_of_any_size_stays_inside_of_0_and_1() {
 
 #[test]
 fn all_orders_of_the_strata_are_equally_likely_and_places_in_them_uniform() {
-    // 24 orders of 4 strata, over many dimensions of one seed and over many replicates.
-    for by_dimension in [true, false] {
-        let mut orders = vec![0; 256];
-        let mut places = vec![0; 20];
-        for draw in 0..6000 {
-            let (dimension, replicate) = if by_dimension { (draw, 0) } else { (0, draw) };
-            let scaled =
-                (0..4).map(|i| 4.0 * latin_hypercube(SEED, dimension, 4, 4 * replicate + i));
-            let order = scaled.fold(0, |order, value| {
-                places[(value.fract() * 20.0) as usize] += 1;
-                4 * order + value as usize
-            });
-            orders[order] += 1;
+    for (n, factorial) in [(2, 2), (3, 6), (4, 24), (5, 120)] {
+        // Over many dimensions of one seed, and over many replicates.
+        for by_dimension in [true, false] {
+            let mut orders = std::collections::BTreeMap::new();
+            let mut places = vec![0; 20];
+            for draw in 0..12_000 {
+                let (dimension, replicate) = if by_dimension { (draw, 0) } else { (0, draw) };
+                let number = |i| latin_hypercube(SEED, dimension, n, n * replicate + i);
+                let scaled: Vec<f64> = (0..n).map(|i| f64::from(n) * number(i)).collect();
+                for value in &scaled {
+                    places[(value.fract() * 20.0) as usize] += 1;
+                }
+                let order: Vec<u32> = scaled.iter().map(|&value| value as u32).collect();
+                *orders.entry(order).or_insert(0) += 1;
+            }
+            let orders: Vec<u32> = orders.into_values().collect();
+            assert_eq!(orders.len(), factorial);
+            // Four standard deviations: one false alarm in 16,000 choices of the seed.
+            assert!(deviate(&orders) < 4.0, "{} of {n}", deviate(&orders));
+            assert!(deviate(&places) < 4.0, "{}", deviate(&places));
         }
-        let seen: Vec<u32> = orders.into_iter().filter(|&count| count > 0).collect();
-        assert_eq!(seen.len(), 24);
-        // Four standard deviations: one false alarm in 16,000 choices of the seed.
-        assert!(deviate(&seen) < 4.0 && deviate(&places) < 4.0);
+    }
+}
+
+#[test]
+fn two_episodes_of_a_large_hypercube_lie_in_any_two_strata_alike() {
+    for n in [129, 250, 256] {
+        let strata = |dimension: u32| {
+            [0, 1].map(|i| (f64::from(n) * latin_hypercube(SEED, dimension, n, i)) as u32)
+        };
+        let (mut first, mut distance) = (vec![0; n as usize], vec![0; n as usize]);
+        for dimension in 0..40_000 {
+            let [a, b] = strata(dimension);
+            first[a as usize] += 1;
+            distance[((n + b - a) % n) as usize] += 1;
+        }
+        assert_eq!(distance.remove(0), 0);
+        assert!(deviate(&first) < 4.0 && deviate(&distance) < 4.0);
     }
 }
 

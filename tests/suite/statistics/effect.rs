@@ -156,6 +156,14 @@ fn too_few_rows_and_too_few_failures_have_no_interval_and_perfect_order_has_one(
     };
     let single = somers_d(&ranked(&x), &flags(1), 0.95).unwrap();
     assert_eq!((single.value, single.interval), (-1.0, NOTHING_KNOWN));
+    // Two failures at the two ends scatter more than any two can on average; they count as two pairs,
+    // and t = 12.706 with one degree of freedom.
+    let ends: Vec<bool> = (0..100).map(|row| row % 99 == 0).collect();
+    let ends = somers_d(&ranked(&x), &Ranked::of_flags(&ends), 0.95).unwrap();
+    let t = 12.706_204_736_f64;
+    let half_width = 2.0 * t * (0.125 + (t / 4.0).powi(2)).sqrt() / (1.0 + t * t / 2.0);
+    assert_eq!(ends.value, 0.0);
+    assert!((ends.interval.upper - half_width).abs() < 1e-9);
     let separated = somers_d(&ranked(&x), &flags(10), 0.95).unwrap();
     assert_eq!((separated.value, separated.interval.lower), (-1.0, -1.0));
     assert!(separated.interval.upper > -0.8 && separated.interval.upper < -0.3);
@@ -205,18 +213,32 @@ fn val_permutation_p_values_average_to_the_enumeration_of_all_permutations() {
     let exact = as_extreme.map(|count| f64::from(count) / f64::from(all));
 
     let (seeds, most) = (2000, 40);
-    let mut sums = [0.0, 0.0];
+    let (mut sums, mut squares) = ([0.0, 0.0], [0.0, 0.0]);
     for seed in 0..seeds {
         let permutations = Permutations { seed, most };
         let effect = effects(&[ranked(&x)], &metric(&y), 0.95, permutations)[0].unwrap();
-        sums[0] += effect.trend_p;
-        sums[1] += effect.shape_p;
+        for (i, p) in [effect.trend_p, effect.shape_p].into_iter().enumerate() {
+            let extreme = p * f64::from(most + 1) - 1.0;
+            sums[i] += extreme;
+            squares[i] += extreme * extreme;
+        }
     }
-    for (sum, exact) in sums.into_iter().zip(exact) {
-        // The mean of (b + 1) / (m + 1); 80,000 permutations have a standard error below 0.18 %.
-        let mean = (sum / seeds as f64 * f64::from(most + 1) - 1.0) / f64::from(most);
-        assert!((mean - exact).abs() < 4.0 * 0.0018, "{mean} {exact}");
+    for ((sum, squares), exact) in sums.into_iter().zip(squares).zip(exact) {
         assert!(exact < 0.2);
+        // b of (b + 1) / (m + 1) is binomial: its mean, with four standard errors of 2000 seeds, ..
+        let m = f64::from(most);
+        let mean = sum / seeds as f64;
+        let variance = m * exact * (1.0 - exact);
+        assert!(
+            (mean - m * exact).abs() < 4.0 * (variance / seeds as f64).sqrt(),
+            "{mean} {exact}"
+        );
+        // .. and its variance (4 x sqrt(2 / 2000) = 13 %), which repeated permutations would raise.
+        let scatter = squares / seeds as f64 - mean * mean;
+        assert!(
+            (scatter / variance - 1.0).abs() < 0.13,
+            "{scatter} {variance}"
+        );
     }
 }
 
