@@ -1,5 +1,6 @@
 //! Bipeds: every episode, controller, agent and joint is compared with the CPU, as those of UAVs are.
 
+use super::agreement::{Expected, TWIN};
 use super::mixed_biped;
 use super::parity::{agreement, followed};
 use crate::common::{altered, gpu_or_skip};
@@ -75,6 +76,31 @@ fn val_another_robot_agrees() {
         return;
     };
     assert!(double.compared == 4);
+}
+
+#[test]
+fn val_a_team_of_42_bipeds_agrees_though_its_references_take_turns_on_the_device() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    // Five rows per half step: 42 agents x 6 joints x 5 x 16 bytes, so 32 MiB hold the references of 831 steps.
+    let campaign = altered(
+        "biped-ground-reaction",
+        &[
+            ("episodes = 512", "episodes = 1"),
+            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
+            ("duration_s = 9.0", "duration_s = 0.9"),
+            ("step_s = 0.002", "step_s = 0.001"),
+            ("settle_s = 1.0", "settle_s = 0.1"),
+            ("kind = \"biped\"", "kind = \"biped\"\nteam = 42"),
+            ("kind = \"walk\"", "kind = \"walk\"\nstart_s = -2.0"),
+        ],
+    );
+    assert!(campaign.time.steps > 831);
+    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let flown = super::fly(&gpu, &campaign, &gains, Tuning::default());
+    let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&flown);
+    let summary = agreed.unwrap();
+    println!("{summary}");
+    assert!(summary.compared == 1);
 }
 
 #[test]
