@@ -181,7 +181,11 @@ impl Check<'_> {
             let points = self.points(&key, own.or(file.points_m.as_deref()))?;
             let walk = match planned.iter().find(|(known, _)| *known == points) {
                 Some((_, walk)) => Arc::clone(walk),
-                None => Arc::new(self.walk(&key, &points, &gait, robot)?),
+                None => {
+                    let walk = Arc::new(self.walk(&key, &points, &gait, robot)?);
+                    planned.push((points, Arc::clone(&walk)));
+                    walk
+                }
             };
             let start = block.and_then(|block| block.start_s);
             let key = match start {
@@ -189,7 +193,6 @@ impl Check<'_> {
                 None => "reference.start_s".to_string(),
             };
             let start_s = self.number(&key, start.or(file.start_s).unwrap_or(0.0), Bounds::Any)?;
-            planned.push((points, Arc::clone(&walk)));
             walks.push(AgentWalk { walk, start_s });
         }
         Ok(Reference::Walk(walks))
