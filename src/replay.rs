@@ -101,44 +101,21 @@ pub fn replay(
         .legs
         .iter()
         .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
+    let fly = |precision, simd| on_cpu(&campaign, &gains, precision, simd, episode, index, every);
+    // The reference, where what flew the run is not to be had.
+    let stand_in = |reason: String| (fly(Precision::F64, None), Some(reason));
     let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
         Some(Engine::Gpu { adapter, .. }) => {
             match on_gpu(adapter, &campaign, &gains, episode, index, every) {
                 Ok(flown) => (flown, None),
-                Err(reason) => (
-                    on_cpu(
-                        &campaign,
-                        &gains,
-                        Precision::F64,
-                        None,
-                        episode,
-                        index,
-                        every,
-                    ),
-                    Some(reason),
-                ),
+                Err(reason) => stand_in(reason),
             }
         }
-        // Other lanes round otherwise; if the run's are not to be had, the reference is the better stand-in.
+        // Other lanes round otherwise.
         Some(&Engine::Cpu {
             simd: Some(simd), ..
-        }) if !simd.is_available() => (
-            on_cpu(
-                &campaign,
-                &gains,
-                Precision::F64,
-                None,
-                episode,
-                index,
-                every,
-            ),
-            Some("this processor lacks the run's lanes".to_string()),
-        ),
-        Some(&Engine::Cpu { simd, .. }) => {
-            let precision = manifest.precision;
-            let flown = on_cpu(&campaign, &gains, precision, simd, episode, index, every);
-            (flown, None)
-        }
+        }) if !simd.is_available() => stand_in("this processor lacks the run's lanes".to_string()),
+        Some(&Engine::Cpu { simd, .. }) => (fly(manifest.precision, simd), None),
         None => {
             return Err(OutputError::NoRun {
                 path: dir.to_path_buf(),
