@@ -71,7 +71,8 @@ fn feedback(stage: u32) -> f32 {
 // Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)].
 //
 // `told` is the feedback that the observer is told was commanded.
-fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, told: f32) {
+// `off` is by how much x and x' are measured too large, beside f2.
+fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec2<f32>, told: f32) {
     let b = sensor_fault_input();
     let s = smoothing();
     let integral = stepped_at(stage, 0u);
@@ -83,13 +84,19 @@ fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, told: f3
     if FTC {
         unexplained = sensor_fault - stepped_at(stage, OBSERVER + 5u);
     }
+    let seen_error = error + off.x;
+    let seen_rate = rate + off.y;
     // y - yhat of (20); C0 r cancels.
     let innovation = vec3(
         integral - stepped_at(stage, OBSERVER),
-        fma(unexplained, b.x, error - error_hat),
-        fma(unexplained, b.y, rate - rate_hat),
+        fma(unexplained, b.x, seen_error - error_hat),
+        fma(unexplained, b.y, seen_rate - rate_hat),
     );
-    stepped_take(stage, 0u, error);
+    var integrand = error;
+    if MEASURED_INTEGRAL {
+        integrand = fma(sensor_fault, b.x, seen_error);
+    }
+    stepped_take(stage, 0u, integrand);
     stepped_take(stage, 1u, rate);
     stepped_take(stage, 2u, error_acceleration);
     var row = injected(0u, innovation, error_hat);

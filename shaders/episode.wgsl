@@ -103,6 +103,15 @@ fn resume() {
         stepped_start[EXTRA + 1u] = stored_number(CHANNEL + EXTRA + 1u);
     }
     signals_begin(span.first);
+    if REMEMBERS {
+        last_command = stored_number(MEMORY);
+        last_measured = vec2(stored_number(MEMORY + 1u), stored_number(MEMORY + 2u));
+        own.held_feedback = stored_number(MEMORY + 3u);
+    }
+    if N_LEAKS > 0u {
+        published[command_slot(own.agent)] = last_command;
+        workgroupBarrier();
+    }
     group_hold(span.first);
 }
 
@@ -133,6 +142,12 @@ fn keep() {
         store_number(CHANNEL + EXTRA, stepped_start[EXTRA]);
         store_number(CHANNEL + EXTRA + 1u, stepped_start[EXTRA + 1u]);
     }
+    if REMEMBERS {
+        store_number(MEMORY, last_command);
+        store_number(MEMORY + 1u, last_measured.x);
+        store_number(MEMORY + 2u, last_measured.y);
+        store_number(MEMORY + 3u, own.held_feedback);
+    }
 }
 
 // The initial state: errors as drawn, and what the observers start from.
@@ -148,9 +163,12 @@ fn start(
     for (var k = 0u; k < 6u; k++) {
         store_number(TOTALS + k, 0.0);
     }
+    for (var k = 0u; k < 2u * N_TURBULENCES; k++) {
+        store_number(TURBULENCE_STATE + k, turbulence_filter(k / 2u, 7u + k % 2u));
+    }
     signals_begin(0u);
-    signals_hold(0u);
-    signals_evaluate(false);
+    signals_hold(0u, 0.0);
+    signals_evaluate(START);
     let integral = drawn_number(INTEGRAL);
     let error = drawn_number(ERROR);
     let rate = drawn_number(ERROR_RATE);
@@ -158,7 +176,8 @@ fn start(
     stepped_start[1] = error;
     stepped_start[2] = rate;
     if OBSERVER_MEASURED {
-        let measured = channel_gains_measured(integral, error, rate, sensor_fault);
+        let off = agent_distortion(0u, reference_at(0u));
+        let measured = channel_gains_measured(integral, error + off.x, rate + off.y, sensor_fault);
         stepped_start[OBSERVER] = measured.x;
         stepped_start[OBSERVER + 1u] = measured.y;
         stepped_start[OBSERVER + 2u] = measured.z;

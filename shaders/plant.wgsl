@@ -28,7 +28,9 @@ struct Response {
     error_acceleration: f32,
     // The feedback that was really commanded, after filter and limits, before any fault.
     told: f32,
-    // The command u of (9) after limits and faults.
+    // The command u of (9) after limits, as it sets out.
+    wanted: f32,
+    // The command that acts, after faults.
     command: f32,
     // By how much the limits cut the command.
     excess: f32,

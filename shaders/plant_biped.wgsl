@@ -56,15 +56,15 @@ fn plus_product(stage: u32, base: f32, row: array<f32, 6>, factors: u32) -> f32 
 fn respond(stage: u32, inputs: Inputs) -> Response {
     let at = inputs.reference;
     // (9): M(r) (r'' + u_fb) + H(r, r').
-    let wanted = plus_product(stage, at.row.w, matrix_row(at, 1u), DEMAND);
+    let demanded = plus_product(stage, at.row.w, matrix_row(at, 1u), DEMAND);
     let limit = own.plant.max_torque;
-    let limited = clamp(wanted, -limit, limit);
-    let excess = wanted - limited;
-    let demanded = select(wanted, limited, CUT);
-    let command = fma(demanded, command_gain, command_bias);
+    let limited = clamp(demanded, -limit, limit);
+    let excess = demanded - limited;
+    let wanted = select(demanded, limited, CUT);
+    let command = actuator_command(wanted);
     // The true robot is the modelled one times a number, so a torque divided by that does the same to the model.
     let force = fma(ground, table[at.place + 2u].z, inputs.force);
-    publish(stage, TORQUE, (command + force) * own.inverse_inertia);
+    publish(stage, TORQUE, (command + force) * inverse_inertia);
     workgroupBarrier();
     // All have read what was demanded; each torque gives way to the acceleration of its joint.
     if CUT {
@@ -80,7 +80,7 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
         told = inputs.feedback - plus_product(stage, 0.0, matrix_row(at, 3u), DEMAND);
     }
     let acceleration = seen(stage, TORQUE, own.channel);
-    return Response(acceleration - at.row.z, told, command, excess, vec2(0.0));
+    return Response(acceleration - at.row.z, told, wanted, command, excess, vec2(0.0));
 }
 
 // Replaces the torques that the joints have published by the accelerations of the joints.

@@ -48,7 +48,7 @@ fn reference(stage: u32, row: vec4<f32>) -> vec2<f32> {
 }
 
 // Shows the other channels of the group what they need of this one. Under thrust, a channel of translation shows
-// [x, bias, demand, gain].
+// [x, demand, and what is between wanted and acting command].
 fn publish_channel(stage: u32, inputs: Inputs) {
     publish(stage, POSITION, inputs.position);
     if PLANT == ATTITUDE {
@@ -56,9 +56,11 @@ fn publish_channel(stage: u32, inputs: Inputs) {
     }
     if PLANT == THRUST {
         if own.channel < 3u {
-            publish(stage, COMMAND_BIAS, command_bias);
+            publish(stage, COMMAND_BIAS, actuator.bias);
             publish(stage, DEMAND, fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w));
-            publish(stage, COMMAND_GAIN, command_gain);
+            publish(stage, COMMAND_GAIN, actuator.gain);
+            publish(stage, COMMAND_LOW, actuator.low);
+            publish(stage, COMMAND_HIGH, actuator.high);
         } else {
             let r = reference(stage, inputs.reference.row);
             publish(stage, VELOCITY, inputs.velocity);
@@ -79,12 +81,12 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
 }
 
 fn axis_respond(inputs: Inputs) -> Response {
-    let demanded = fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w);
-    let command = fma(demanded, command_gain, command_bias);
+    let wanted = fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w);
+    let command = actuator_command(wanted);
     let force = fma(inputs.velocity, -setting.plant.drag, command + inputs.force);
     let offset = inputs.reference.row.z + setting.plant.gravity;
-    let error_acceleration = fma(force, own.inverse_inertia, -offset);
-    return Response(error_acceleration, inputs.feedback, command, 0.0, vec2(0.0));
+    let error_acceleration = fma(force, inverse_inertia, -offset);
+    return Response(error_acceleration, inputs.feedback, wanted, command, 0.0, vec2(0.0));
 }
 
 // Theta'' under a torque per true inertia, (3); the attitude begins with channel `first` of the group.
@@ -92,15 +94,15 @@ fn attitude_acceleration(stage: u32, first: u32, torque: f32, rate: f32) -> f32 
     let i = own.channel - first;
     let net = fma(rate, -setting.plant.angular_drag, torque);
     let gyroscopic = seen(stage, VELOCITY, first + (i + 1u) % 3u) * seen(stage, VELOCITY, first + (i + 2u) % 3u);
-    return fma(gyroscopic, -own.plant.gyro, net * own.inverse_inertia);
+    return fma(gyroscopic, -own.plant.gyro, net * inverse_inertia);
 }
 
 fn attitude_respond(stage: u32, inputs: Inputs) -> Response {
-    let demanded = fma(inputs.feedback, own.plant.inertia, inputs.reference.row.w);
-    let command = fma(demanded, command_gain, command_bias);
+    let wanted = fma(inputs.feedback, own.plant.inertia, inputs.reference.row.w);
+    let command = actuator_command(wanted);
     let torque = command + inputs.force;
     let acceleration = attitude_acceleration(stage, 0u, torque, inputs.velocity);
-    return Response(acceleration - inputs.reference.row.z, inputs.feedback, command, 0.0, vec2(0.0));
+    return Response(acceleration - inputs.reference.row.z, inputs.feedback, wanted, command, 0.0, vec2(0.0));
 }
 
 // R(Theta) [0 0 1]', (3).
@@ -144,18 +146,21 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
         let excess = vec3(pitch_wanted - pitch_command, roll_wanted - roll_command, thrust_wanted - thrust);
         let told = fma(thrust, commanded_axis[own.channel], -inputs.reference.row.w) * setting.plant.inverse_mass;
-        let command = fma(seen(stage, DEMAND, own.channel), command_gain, command_bias);
 
         // What the faults leave of the thrust acts along the true body axis.
-        let applied = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
+        let unlimited = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
+        let applied = clamp(unlimited, seen(stage, COMMAND_LOW, 2u), seen(stage, COMMAND_HIGH, 2u));
+        let demand = seen(stage, DEMAND, own.channel);
+        let wanted = select(demand, thrust, own.channel == 2u);
+        let command = fma(demand, actuator.gain, actuator.bias);
         let true_yaw = seen(stage, POSITION, 5u);
         let true_axis = body_axis(seen(stage, POSITION, 3u), seen(stage, POSITION, 4u), sin_cos(true_yaw));
         var net = fma(applied, true_axis[own.channel], inputs.force);
         net = fma(inputs.velocity, -setting.plant.drag, net);
         let gravity = select(0.0, setting.plant.gravity, own.channel == 2u);
         let offset = inputs.reference.row.z + gravity;
-        let error_acceleration = fma(net, own.inverse_inertia, -offset);
-        return Response(error_acceleration, told, command, excess[own.channel], vec2(0.0));
+        let error_acceleration = fma(net, inverse_inertia, -offset);
+        return Response(error_acceleration, told, wanted, command, excess[own.channel], vec2(0.0));
     }
 
     let i = own.channel - 3u;
@@ -173,12 +178,12 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
     let inertia = own.plant.inertia;
     let gyroscopic = rates[(i + 1u) % 3u] * rates[(i + 2u) % 3u] * own.plant.gyro;
     let non_inertial = fma(gyroscopic, inertia, rates[i] * setting.plant.angular_drag);
-    let wanted = fma(accelerations[i] + inputs.feedback, inertia, non_inertial);
-    let limited = clamp(wanted, -limit, limit);
+    let demanded = fma(accelerations[i] + inputs.feedback, inertia, non_inertial);
+    let limited = clamp(demanded, -limit, limit);
     let told = fma(limited - non_inertial, own.plant.inverse_inertia, -accelerations[i]);
-    let command = fma(limited, command_gain, command_bias);
+    let command = actuator_command(limited);
     let torque = command + inputs.force;
     let angular = attitude_acceleration(stage, 3u, torque, inputs.velocity);
     let extra_rate = vec2(rates[i], accelerations[i]);
-    return Response(angular - accelerations[i], told, command, wanted - limited, extra_rate);
+    return Response(angular - accelerations[i], told, limited, command, demanded - limited, extra_rate);
 }

@@ -1,80 +1,134 @@
 // Twin of src/model/signal.rs: disturbances and faults of one channel, what is held over a step and what varies within it.
 
-// amplitude sin(phase); `advance` is in turns per half step.
-struct Sine {
-    amplitude: f32,
-    phase: u32,
-    advance: u32,
-}
-
-// amplitude tanh(sin(phase) / smoothing); `held` is the amplitude of this step, zero before the onset.
-struct Square {
+// A periodic signal; its list says of what shape. `held` is the amplitude of this step.
+struct Wave {
     inverse_smoothing: f32,
     phase: u32,
+    // Turns per half step.
     advance: u32,
     held: f32,
 }
 
-// The samples of noise are kept in the state, where each is needed once.
-var<private> sines: array<Sine, max(N_SINES, 1u)>;
-var<private> squares: array<Square, max(N_SQUARES, 1u)>;
-// The constant disturbance.
+// All waves, in the order of their switches.
+var<private> waves: array<Wave, max(N_WAVES, 1u)>;
+// The part of d1 that is always there.
 var<private> constant: f32;
 // Scale of the ground's reaction.
 var<private> ground: f32;
-// Sensor bias and noise of this step.
+// What of d1 and of f2 is held over this step.
+var<private> held_disturbance: f32;
 var<private> held_sensor: f32;
-// What actuator faults leave of the command in this step, and what they add to it.
+// What faults leave of the command in this step, and what they add to it.
 var<private> command_gain: f32;
 var<private> command_bias: f32;
+// By how much the command may leave the last one: at the start of this step, and from there to its end.
+var<private> slew: vec2<f32>;
+// By what share x and x' are measured too large in this step.
+var<private> scale: f32;
+// Whether the measurement stays what it was (1 or 0).
+var<private> frozen: f32;
+// 1 / true inertia in this step.
+var<private> inverse_inertia: f32;
+// The command, and x and x' as measured, at the start of the last step.
+var<private> last_command: f32;
+var<private> last_measured: vec2<f32>;
 // d1 and f2 at the current stage's time.
 var<private> disturbance: f32;
 var<private> sensor_fault: f32;
-
-// The value of switch number `k` of the channel at a step: zero before its onset.
-fn switch_at(k: u32, step: u32) -> f32 {
-    return select(0.0, drawn_number(SWITCHES + 2u * k + 1u), drawn(SWITCHES + 2u * k) <= step);
-}
-
-// The first step after `step` at which a switch of the channel turns on.
-fn next_onset(step: u32) -> u32 {
-    var next = NEVER;
-    for (var k = 0u; k < N_SWITCHES; k++) {
-        let onset = drawn(SWITCHES + 2u * k);
-        next = select(next, min(next, onset), onset > step);
-    }
-    return next;
-}
 
 // Takes the signals from the draw, with their phases at the start of a step. Phases count in fixed point modulo one turn, so
 // this is exactly the sum of as many half steps.
 fn signals_begin(step: u32) {
     constant = drawn_number(CONSTANT);
     ground = drawn_number(GROUND);
-    for (var k = 0u; k < N_SINES; k++) {
-        let word = SINES + 3u * k;
+    actuator = Actuator(1.0, 0.0, -MAX, MAX);
+    for (var k = 0u; k < N_WAVES; k++) {
+        let word = WAVES + 3u * k;
         let advance = drawn(word + 2u);
-        sines[k] = Sine(drawn_number(word), drawn(word + 1u) + 2u * step * advance, advance);
-    }
-    for (var k = 0u; k < N_SQUARES; k++) {
-        let word = SQUARES + 3u * k;
-        let advance = drawn(word + 2u);
-        squares[k] = Square(drawn_number(word), drawn(word + 1u) + 2u * step * advance, advance, 0.0);
+        waves[k] = Wave(drawn_number(word), drawn(word + 1u) + 2u * step * advance, advance, 0.0);
     }
 }
 
-// Sets what is held over step number `step`.
-fn signals_hold(step: u32) {
+// Whether a sampled controller gives a new command at the start of a step.
+fn signals_ticks(step: u32) -> bool {
+    return step % HOLD_STEPS == 0u;
+}
+
+// Sets what is held over step number `step`; `team` is the sum of the team's last commands.
+fn signals_hold(step: u32, team: f32) {
+    hold_command(step, team);
+    hold_sensor(step);
+    var force = constant;
+    for (var k = 0u; k < N_WEIGHTS; k++) {
+        force = force + switch_at(WEIGHTS + k, step);
+    }
+    for (var k = 0u; k < N_TURBULENCES; k++) {
+        force = force + turbulence_force(k);
+    }
+    held_disturbance = force;
+    var grown = 1.0;
+    for (var k = 0u; k < N_INERTIAS; k++) {
+        grown = grown + switch_at(INERTIAS + k, step);
+    }
+    inverse_inertia = own.inverse_inertia;
+    if N_INERTIAS > 0u {
+        inverse_inertia = own.inverse_inertia / grown;
+    }
+    for (var k = 0u; k < N_WAVES; k++) {
+        waves[k].held = switch_at(SINES + k, step);
+    }
+}
+
+fn hold_command(step: u32, team: f32) {
     var gain = 1.0;
     for (var k = 0u; k < N_LOSSES; k++) {
         gain = gain * (1.0 - switch_at(LOSSES + k, step));
     }
-    command_gain = gain;
+    for (var k = 0u; k < N_INTERMITTENTS; k++) {
+        let lost = burst_at(INTERMITTENTS + k, step).x;
+        gain = gain * (1.0 - lost);
+    }
     var bias = 0.0;
     for (var k = 0u; k < N_COMMAND_BIASES; k++) {
         bias = bias + switch_at(COMMAND_BIASES + k, step);
     }
+    for (var k = 0u; k < N_LEAKS; k++) {
+        let others = team - last_command;
+        bias = fma(others, switch_at(LEAKS + k, step), bias);
+    }
+    for (var k = 0u; k < N_HARD_OVERS; k++) {
+        let weight = switch_weight(HARD_OVERS + k, step);
+        let left = 1.0 - weight;
+        gain = gain * left;
+        bias = fma(switch_value(HARD_OVERS + k), weight, bias * left);
+    }
+    command_gain = gain;
     command_bias = bias;
+    var limit = MAX;
+    for (var k = 0u; k < N_RATE_LIMITS; k++) {
+        let weight = switch_weight(RATE_LIMITS + k, step);
+        limit = lane_select_le(0.5, weight, lane_min(switch_value(RATE_LIMITS + k), limit), limit);
+    }
+    for (var k = 0u; k < N_COMMAND_HOLDS; k++) {
+        let holds = burst_at(COMMAND_HOLDS + k, step).x;
+        limit = lane_select_le(0.5, holds, 0.0, limit);
+    }
+    var at_start = limit;
+    var within = limit;
+    if HOLD_STEPS > 1u {
+        within = 0.0;
+        at_start = select(0.0, at_start, signals_ticks(step));
+    }
+    if step == 0u {
+        at_start = MAX;
+    }
+    slew = vec2(at_start, within);
+    for (var k = 0u; k < N_COMMAND_RINGS; k++) {
+        ring_hold(k, step);
+    }
+}
+
+fn hold_sensor(step: u32) {
     var sensor = 0.0;
     for (var k = 0u; k < N_SENSOR_BIASES; k++) {
         sensor = sensor + switch_at(SENSOR_BIASES + k, step);
@@ -86,42 +140,122 @@ fn signals_hold(step: u32) {
         let sample = stored_number(SAMPLES + 4u * k + step % 4u);
         sensor = fma(sample, switch_at(NOISES + k, step), sensor);
     }
+    for (var k = 0u; k < N_OUTLIERS; k++) {
+        let outlier = burst_at(OUTLIERS + k, step);
+        sensor = fma(outlier.x, outlier.y, sensor);
+    }
     held_sensor = sensor;
-    for (var k = 0u; k < N_SQUARES; k++) {
-        squares[k].held = switch_at(SQUARE_SWITCHES + k, step);
+    var too_large = 0.0;
+    for (var k = 0u; k < N_SCALES; k++) {
+        too_large = too_large + switch_at(SCALES + k, step);
+    }
+    scale = too_large;
+    var holds = 0.0;
+    for (var k = 0u; k < N_SENSOR_HOLDS; k++) {
+        holds = lane_max(holds, burst_at(SENSOR_HOLDS + k, step).x);
+    }
+    frozen = select(holds, 0.0, step == 0u);
+    for (var k = 0u; k < N_SENSOR_RINGS; k++) {
+        ring_hold(N_COMMAND_RINGS + k, step);
     }
 }
 
-// Evaluates d1 and f2 at the phases of the signals, after moving them on by half a step if `advance`.
-fn signals_evaluate(advance: bool) {
-    disturbance = constant;
+// Evaluates d1, f2 and the actuator at a moment of the step, whose phases are half a step further each.
+fn signals_evaluate(moment: u32) {
+    let advance = moment != START;
+    disturbance = held_disturbance;
     sensor_fault = held_sensor;
-    for (var k = 0u; k < N_SINES; k++) {
-        if advance {
-            sines[k].phase = sines[k].phase + sines[k].advance;
-        }
-        disturbance = fma(lane_turns_sin(sines[k].phase), sines[k].amplitude, disturbance);
+    if !advance || N_COMMAND_WAVES > 0u || N_COMMAND_RINGS > 0u {
+        actuator.gain = command_gain;
+        actuator.bias = command_bias;
     }
-    for (var k = 0u; k < N_SQUARES; k++) {
-        if advance {
-            squares[k].phase = squares[k].phase + squares[k].advance;
-        }
-        let shape = tanh(lane_turns_sin(squares[k].phase) * squares[k].inverse_smoothing);
-        sensor_fault = fma(shape, squares[k].held, sensor_fault);
+    for (var k = SINES; k < SINES + N_SINES; k++) {
+        let sine = wave_turned(k - SINES, advance);
+        disturbance = fma(sine, waves[k - SINES].held, disturbance);
+    }
+    for (var k = GUSTS; k < GUSTS + N_GUSTS; k++) {
+        let shape = fma(wave_turned(k - SINES, advance), 0.5, 0.5);
+        disturbance = fma(shape, waves[k - SINES].held, disturbance);
+    }
+    for (var k = SENSOR_WAVES; k < SENSOR_WAVES + N_SENSOR_WAVES; k++) {
+        let sine = wave_turned(k - SINES, advance);
+        sensor_fault = fma(sine, waves[k - SINES].held, sensor_fault);
+    }
+    for (var k = SQUARES; k < SQUARES + N_SQUARES; k++) {
+        let sine = wave_turned(k - SINES, advance);
+        let shape = tanh(sine * waves[k - SINES].inverse_smoothing);
+        sensor_fault = fma(shape, waves[k - SINES].held, sensor_fault);
+    }
+    for (var k = COMMAND_WAVES; k < COMMAND_WAVES + N_COMMAND_WAVES; k++) {
+        let sine = wave_turned(k - SINES, advance);
+        actuator.bias = fma(sine, waves[k - SINES].held, actuator.bias);
+    }
+    if N_COMMAND_RINGS > 0u {
+        recall_command(moment);
+    }
+    if LIMITS_RATE {
+        limit_rate(moment);
     }
 }
 
-// Draws the four samples that block number `index` of a noise holds (Box and Muller's transform, twice).
-fn noise_draw(k: u32, index: u32) {
-    let member = own.agent * MEMBERS_PER_AGENT + setting.first_channel + own.channel;
-    let address = Address(drawn(EPISODE), STREAM_NOISE, NOISE_ENTRIES[k], member, index);
-    let words = address_words(address, setting.seed);
-    noise_pair(SAMPLES + 4u * k, words.x, words.y);
-    noise_pair(SAMPLES + 4u * k + 2u, words.z, words.w);
+// Replaces the wanted command by a past one, where the past is played.
+fn recall_command(moment: u32) {
+    var wanted = vec2(1.0, 0.0);
+    var past = vec2(0.0);
+    for (var k = 0u; k < N_COMMAND_RINGS; k++) {
+        past = ring_recall(k, moment, past);
+        wanted = ring_or_past(k, wanted, vec2(0.0));
+    }
+    let gain = actuator.gain;
+    actuator.bias = fma(past.x, gain, actuator.bias);
+    actuator.gain = gain * wanted.x;
 }
 
-fn noise_pair(sample: u32, word: u32, turn: u32) {
-    let radius = sqrt(lane_ln(lane_unit_from_words(word)) * -2.0);
-    store_number(sample, radius * lane_turns_sin(turn));
-    store_number(sample + 1u, radius * lane_turns_sin(turn + QUARTER_TURN));
+// Keeps the command near the last one.
+fn limit_rate(moment: u32) {
+    var near = slew.x;
+    if moment == MIDDLE {
+        near = slew.y * 0.5;
+    }
+    if moment == END {
+        near = slew.y;
+    }
+    actuator.low = last_command - near;
+    actuator.high = last_command + near;
+}
+
+// x and x' as they are measured at a moment of the step.
+fn measure(moment: u32, motion: vec2<f32>) -> vec2<f32> {
+    var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
+    for (var k = 0u; k < N_SENSOR_RINGS; k++) {
+        seen = ring_recall(N_COMMAND_RINGS + k, moment, seen);
+    }
+    return select(seen, last_measured, frozen >= 0.5);
+}
+
+// Takes in what was wanted and what was at the start of a step.
+fn signals_remember(step: u32, wanted: f32, motion: vec2<f32>) {
+    last_measured = measure(START, motion);
+    last_command = actuator_command(wanted);
+    var sent = vec2(wanted, 0.0);
+    for (var k = 0u; k < N_COMMAND_RINGS; k++) {
+        let recalled = ring_recall(k, START, sent);
+        ring_record(k, step, sent);
+        sent = recalled;
+    }
+    var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
+    for (var k = 0u; k < N_SENSOR_RINGS; k++) {
+        let ring = N_COMMAND_RINGS + k;
+        let recalled = ring_recall(ring, START, seen);
+        ring_record(ring, step, seen);
+        seen = recalled;
+    }
+}
+
+// The sine of a wave's phase, after half a step if it is to `advance`.
+fn wave_turned(k: u32, advance: bool) -> f32 {
+    if advance {
+        waves[k].phase = waves[k].phase + waves[k].advance;
+    }
+    return lane_turns_sin(waves[k].phase);
 }

@@ -215,7 +215,9 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
 impl Overrides {
     fn load(&self) -> Result<Campaign, Failure> {
         let mut campaign = Campaign::load(&self.campaign)?;
-        campaign.episodes = self.episodes.unwrap_or(campaign.episodes);
+        if let Some(episodes) = self.episodes {
+            campaign.set_episodes(episodes)?;
+        }
         campaign.seed = self.seed.unwrap_or(campaign.seed);
         Ok(campaign)
     }

@@ -4,7 +4,7 @@
 //! over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
 
 use crate::campaign::{Agent, Campaign};
-use crate::draw::{AgentDraw, Episode};
+use crate::draw::{AgentDraw, Episode, FaultDraw};
 
 /// A quantity and its size in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
 pub type Condition = (String, Option<f64>);
@@ -23,14 +23,26 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
         all.push(("inertia_scale".to_string(), scale));
     }
     all.push(("kappa".to_string(), of_agents(&|draw| draw.kappa)));
+    if campaign.control.delay_s.is_some() {
+        let delay = of_agents(&|draw| draw.control_delay_s);
+        all.push(("control_delay_s".to_string(), delay));
+    }
     let mut initial = |name: &str, size: Option<f64>| all.push((format!("initial_{name}"), size));
     initial("error", of_channels(&|draw| &draw.error));
     initial("error_rate", of_channels(&|draw| &draw.error_rate));
     initial("error_integral", of_channels(&|draw| &draw.error_integral));
     for (index, disturbance) in campaign.disturbances.iter().enumerate() {
         for (k, parameter) in disturbance.kind.parameters().iter().enumerate() {
-            let values = of_channels(&|draw| &draw.disturbances[index][k]);
-            all.push((format!("disturbance{index}_{}", parameter.name), values));
+            let values = agents.iter().flat_map(|draw| {
+                let of_channels = draw.disturbances[index][k].iter().enumerate();
+                of_channels
+                    .filter(|(channel, _)| disturbance.kind.acts_on(*channel))
+                    .map(|(_, value)| *value)
+            });
+            all.push((
+                format!("disturbance{index}_{}", parameter.name),
+                size(values),
+            ));
         }
     }
     for (index, fault) in campaign.faults.iter().enumerate() {
@@ -40,6 +52,16 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
         let onsets = struck().filter(|fault| fault.occurs());
         let first = onsets.map(|fault| fault.onset_s).reduce(f64::min);
         all.push((format!("fault{index}_onset_s"), first));
+        let mut of_time = |name: &str, pick: fn(&FaultDraw) -> f64| {
+            let lengths = struck().filter(|fault| fault.occurs()).map(pick);
+            all.push((format!("fault{index}_{name}"), size(lengths)));
+        };
+        if fault.duration_s.is_some() {
+            of_time("duration_s", |fault| fault.duration_s);
+        }
+        if fault.ramp_s.is_some() {
+            of_time("ramp_s", |fault| fault.ramp_s);
+        }
         for (k, parameter) in fault.kind.parameters().iter().enumerate() {
             let values = struck().flat_map(|fault| {
                 let of_channels = fault.parameters[k].iter().zip(&fault.strikes);
@@ -51,6 +73,21 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
         }
     }
     all
+}
+
+/// The fault that a condition is about, and the rest of the condition's name.
+#[must_use]
+pub fn fault_of(condition: &str) -> Option<(usize, &str)> {
+    let (index, rest) = condition.strip_prefix("fault")?.split_once('_')?;
+    Some((index.parse().ok()?, rest))
+}
+
+/// A condition in the words of the campaign: with the name of its fault.
+#[must_use]
+pub fn title(campaign: &Campaign, condition: &str) -> String {
+    let named = fault_of(condition)
+        .and_then(|(index, rest)| Some(format!("{} {rest}", campaign.faults.get(index)?.name)));
+    named.unwrap_or_else(|| condition.to_string())
 }
 
 /// Root mean square; none of nothing.

@@ -1,5 +1,6 @@
 //! Some episodes of a run again on the CPU in double precision: whether the run may be trusted.
 
+use crate::attenuation::{Attenuations, GroupAttenuation, Witness};
 use crate::backend::Flown;
 use crate::backend::cpu::{Cpu, Precision};
 use crate::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
@@ -26,6 +27,8 @@ pub const RMSE_FLOOR: f64 = 0.05;
 const SAMPLES: u32 = 256;
 /// Episodes whose trajectories are in memory at once.
 const CHUNK: usize = 64;
+/// Episodes whose trajectories at every step are in memory at once: each takes up to 100 MB.
+const WHOLE: usize = 4;
 
 /// How a run's episodes differ from the reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,6 +48,9 @@ pub struct CrossCheck {
     pub verdicts_differ_clearly: usize,
     /// Pairs that give other numbers than those in the tables when they fly again on the run's own engine.
     pub not_repeated: usize,
+    /// What inequality (24) says about these episodes, by controller and channel group; empty in runs of older versions.
+    #[serde(default)]
+    pub attenuation: Vec<GroupAttenuation>,
 }
 
 impl CrossCheck {
@@ -99,6 +105,7 @@ pub fn cross_check(
         verdicts_differ: 0,
         verdicts_differ_clearly: 0,
         not_repeated: 0,
+        attenuation: attenuation(campaign, gains, &reference, &episodes),
     };
     for episodes in episodes.chunks(CHUNK) {
         let found = match &mut engine {
@@ -118,6 +125,28 @@ pub fn cross_check(
         }
     }
     Ok(check)
+}
+
+/// What inequality (24) says about some episodes under each controller that has a certificate.
+fn attenuation(
+    campaign: &Campaign,
+    gains: &GainSet,
+    reference: &Cpu,
+    episodes: &[u32],
+) -> Vec<GroupAttenuation> {
+    let controllers = gains.controllers.iter().enumerate();
+    let certified = controllers.filter(|(_, controller)| controller.is_certified());
+    let of_controller = |(index, _)| {
+        let witness = Witness::new(campaign, gains, index);
+        let of_episode =
+            |&episode: &u32| witness.of_episode(episode, || reference.trace(episode, index, 1).1);
+        let chunks = episodes.chunks(WHOLE);
+        let flights: Vec<Attenuations> = chunks
+            .flat_map(|chunk| chunk.par_iter().map(of_episode).collect::<Vec<_>>())
+            .collect();
+        witness.by_group(&flights)
+    };
+    certified.flat_map(of_controller).collect()
 }
 
 /// What flies the episodes that are checked.

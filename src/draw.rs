@@ -1,8 +1,11 @@
 //! From (seed, episode) to the effective parameters of an episode: pure, and free of order. Every controller of an
 //! episode meets the same draw.
 
-use crate::campaign::{Campaign, Drawn, FaultChannels, Per};
+use crate::campaign::{
+    Campaign, Drawn, FaultChannels, Per, Sampling, Stratum, StratumFaults, Time,
+};
 use crate::model::rng::{Address, Stream};
+use crate::sampling::{latin_hypercube, sobol};
 
 /// Everything random about an episode, as it is applied.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +25,8 @@ pub struct AgentDraw {
     pub inertia_scale: f64,
     /// Coupling strength.
     pub kappa: f64,
+    /// Time that a command takes to the actuator, s.
+    pub control_delay_s: f64,
     /// x - r at t = 0.
     pub error: Vec<f64>,
     /// x' - r' at t = 0.
@@ -41,6 +46,10 @@ pub struct FaultDraw {
     pub strikes: Vec<bool>,
     /// When it begins, s.
     pub onset_s: f64,
+    /// How long it stays, s; infinite if to the end.
+    pub duration_s: f64,
+    /// The time in which it comes, s; 0 if at once.
+    pub ramp_s: f64,
     /// Its parameters: `[parameter][channel]`.
     pub parameters: Vec<Vec<f64>>,
 }
@@ -50,6 +59,18 @@ impl FaultDraw {
     #[must_use]
     pub fn occurs(&self) -> bool {
         self.strikes.contains(&true)
+    }
+
+    /// The first step after it, if it ends.
+    #[must_use]
+    pub fn end_step(&self, time: Time) -> u32 {
+        let steps = time.whole_steps(self.duration_s).min(f64::from(time.steps));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count of steps"
+        )]
+        time.onset_step(self.onset_s).saturating_add(steps as u32)
     }
 }
 
@@ -62,6 +83,7 @@ enum Quantity {
     Error,
     ErrorRate,
     ErrorIntegral,
+    ControlDelay,
 }
 
 /// Index numbers of a fault's own draws; its parameters follow.
@@ -69,6 +91,9 @@ const OCCURRENCE: u32 = 0;
 const STRUCK_CHANNEL: u32 = 1;
 const ONSET: u32 = 2;
 const FIRST_PARAMETER: u32 = 3;
+/// Beyond all parameters.
+const DURATION: u32 = 100;
+const RAMP: u32 = 101;
 
 /// Draws an episode of a campaign.
 #[must_use]
@@ -77,6 +102,9 @@ pub fn draw(campaign: &Campaign, episode: u32) -> Episode {
         seed: campaign.seed,
         episode,
         channels: campaign.channels().len(),
+        stratum: campaign.strata.of(episode),
+        sampling: campaign.sampling,
+        episodes: campaign.episodes,
     };
     Episode {
         index: episode,
@@ -86,13 +114,17 @@ pub fn draw(campaign: &Campaign, episode: u32) -> Episode {
     }
 }
 
-struct Draws {
+struct Draws<'a> {
     seed: u64,
     episode: u32,
     channels: usize,
+    stratum: Option<&'a Stratum>,
+    sampling: Sampling,
+    /// Episodes of the campaign: hypercubes belong to their size.
+    episodes: u32,
 }
 
-impl Draws {
+impl Draws<'_> {
     fn agent(&self, campaign: &Campaign, agent: usize) -> AgentDraw {
         let initial = |quantity: Quantity, drawn: &Drawn| {
             self.values(Stream::Initial, quantity as u32, 0, drawn, agent)
@@ -101,6 +133,10 @@ impl Draws {
             mass_scale: initial(Quantity::MassScale, &campaign.mass_scale)[0],
             inertia_scale: initial(Quantity::InertiaScale, &campaign.inertia_scale)[0],
             kappa: initial(Quantity::Kappa, &campaign.kappa)[0],
+            control_delay_s: match &campaign.control.delay_s {
+                Some(delay_s) => initial(Quantity::ControlDelay, delay_s)[0],
+                None => 0.0,
+            },
             error: initial(Quantity::Error, &campaign.initial.error),
             error_rate: initial(Quantity::ErrorRate, &campaign.initial.error_rate),
             error_integral: initial(Quantity::ErrorIntegral, &campaign.initial.error_integral),
@@ -125,7 +161,10 @@ impl Draws {
 
     fn fault(&self, fault: &crate::campaign::Fault, entry: u32, agent: usize) -> FaultDraw {
         let unit = |index| self.unit(Stream::Fault, entry, index, Per::Agent, agent, 0);
-        let occurs = unit(OCCURRENCE) < fault.probability;
+        let occurs = match self.stratum.map(|stratum| &stratum.faults) {
+            None | Some(StratumFaults::Drawn) => unit(OCCURRENCE) < fault.probability,
+            Some(StratumFaults::Certain(faults)) => faults.contains(&(entry as usize)),
+        };
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -137,11 +176,18 @@ impl Draws {
             FaultChannels::One => channel == one,
             FaultChannels::These(channels) => channels.contains(&channel),
         };
+        let of_agent = |index: u32, drawn: Option<&Drawn>, absent: f64| {
+            drawn.map_or(absent, |drawn| {
+                self.values(Stream::Fault, entry, index, drawn, agent)[0]
+            })
+        };
         FaultDraw {
             strikes: (0..self.channels)
                 .map(|channel| occurs && struck(channel))
                 .collect(),
-            onset_s: self.values(Stream::Fault, entry, ONSET, &fault.onset_s, agent)[0],
+            onset_s: of_agent(ONSET, Some(&fault.onset_s), 0.0),
+            duration_s: of_agent(DURATION, fault.duration_s.as_ref(), f64::INFINITY),
+            ramp_s: of_agent(RAMP, fault.ramp_s.as_ref(), 0.0),
             parameters: self.parameters(
                 Stream::Fault,
                 entry,
@@ -198,15 +244,58 @@ impl Draws {
             Per::Agent => member(agent, 0),
             Per::Channel => member(agent, channel),
         };
-        Address {
+        let address = Address {
             episode: self.episode,
             stream,
             entry,
             member,
             index,
+        };
+        let place = self.sampling.place(self.episode);
+        match (self.sampling, place) {
+            (Sampling::LatinHypercube { replicates }, Some((replicate, row))) => {
+                let rows = self.episodes / replicates.max(1);
+                let row = replicate * rows + row;
+                latin_hypercube(self.seed, dimension(address), rows, row)
+            }
+            (Sampling::Sobol { .. }, Some((replicate, row))) => {
+                sobol(self.seed, replicate, dimension(address), row)
+            }
+            _ => address.unit(self.seed),
         }
-        .unit(self.seed)
     }
+}
+
+/// Disturbances, or faults, that the dimensions of a design can tell apart.
+pub(crate) const MOST_ENTRIES: usize = 1 << 11;
+
+/// The dimension of a design that stands for the address of a quantity: a number that depends on nothing else, so that it stays
+/// when a campaign gets another fault. Nets are balanced best within four dimensions from a multiple of four on; these are the
+/// parameters of a channel's disturbance, those of an agent's fault, and the masses, coupling and error that a quantity of the
+/// stream `Initial` begins with.
+fn dimension(address: Address) -> u32 {
+    const INDEX_BITS: u32 = 7;
+    const MEMBER_BITS: u32 = 12;
+    const ENTRY_BITS: u32 = MOST_ENTRIES.ilog2();
+    const STREAM_BITS: u32 = 2;
+    const {
+        assert!(INDEX_BITS + MEMBER_BITS + ENTRY_BITS + STREAM_BITS == u32::BITS);
+        assert!(RAMP < 1 << INDEX_BITS && DURATION < 1 << INDEX_BITS);
+    };
+    // The stream `Initial` has many entries of one number each.
+    let (entry, index) = match address.stream {
+        Stream::Initial => (address.index, address.entry),
+        _ => (address.entry, address.index),
+    };
+    let parts = [
+        (address.stream as u32, STREAM_BITS),
+        (entry, ENTRY_BITS),
+        (address.member, MEMBER_BITS),
+        (index, INDEX_BITS),
+    ];
+    parts
+        .into_iter()
+        .fold(0, |number, (part, bits)| (number << bits) | part)
 }
 
 /// Addresses that an agent has: more than any robot has channels.

@@ -6,16 +6,20 @@ use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuFlyer, GpuTimes, Tuning, Wa
 use crate::campaign::Campaign;
 use crate::gains::GainSet;
 use crate::manifest::Times;
-use crate::tables::Tables;
+use crate::stop::Watch;
+use crate::tables::{Status, Tables};
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
 use thiserror::Error;
 
 /// Episodes of the CPU between two additions to the tables: enough to keep many cores busy, few enough to keep memory small.
 const CPU_BATCH: u32 = 2048;
+
+/// Episodes of the CPU between two additions, at least, where they may be the last: sixteen lanes on each of sixteen threads.
+const LOOK_BATCH: u32 = 256;
 
 /// Where the episodes are to fly.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -117,6 +121,8 @@ pub enum Engine {
 pub struct Flight {
     /// The tables.
     pub tables: Tables,
+    /// What has ended the run early, if it has.
+    pub watch: Watch,
     /// Times so far.
     pub times: Times,
     /// What flew, in the order of the episodes; together they are the first episodes of the campaign.
@@ -182,6 +188,7 @@ pub fn fly(
         .map_err(|source| FlightError::Threads { threads, source })?;
     let mut flight = Flight {
         tables: Tables::new(campaign),
+        watch: Watch::new(campaign),
         times: Times::default(),
         legs: Vec::new(),
         notes: Vec::new(),
@@ -219,6 +226,11 @@ pub fn fly(
 }
 
 impl Flight {
+    /// Episodes in the tables.
+    fn recorded(&self) -> u32 {
+        u32::try_from(self.tables.scores.episodes()).unwrap_or(u32::MAX)
+    }
+
     /// Flies on a GPU, batch by batch, until all are done or it fails.
     fn on_gpu(
         &mut self,
@@ -234,19 +246,24 @@ impl Flight {
             Err(error) => return Some(error),
         };
         self.times.loop_s += start.elapsed().as_secs_f64();
-        let (tables, times, pool) = (&mut self.tables, &mut self.times, &self.pool);
+        let (tables, watch) = (&mut self.tables, &mut self.watch);
+        let (times, pool) = (&mut self.times, &self.pool);
         let (mut next, mut failure) = (0, None);
+        let enough = AtomicBool::new(false);
+        let seen = &enough;
         // The tables take in a batch while the next one flies; at most one waits, so memory stays small.
         std::thread::scope(|scope| {
             let (sender, batches) = mpsc::sync_channel::<Vec<Flown>>(1);
             let filling = scope.spawn(move || {
                 let mut spent_s = 0.0;
                 for batch in batches {
-                    spent_s += fill(tables, campaign, &batch);
+                    spent_s += fill(tables, watch, campaign, &batch);
+                    seen.store(watch.is_done(), Ordering::Relaxed);
                 }
                 spent_s
             });
-            while next < campaign.episodes && failure.is_none() {
+            let more = || !enough.load(Ordering::Relaxed);
+            while next < campaign.episodes && failure.is_none() && more() {
                 let until = next.saturating_add(flyer.batch()).min(campaign.episodes);
                 let start = Instant::now();
                 let flown = pool.install(|| flyer.fly(next..until, done));
@@ -262,10 +279,12 @@ impl Flight {
             let filled = filling.join();
             times.statistics_s += filled.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         });
-        if next > 0 {
+        // What was flown beyond the end is in no table.
+        let episodes = self.recorded();
+        if episodes > 0 {
             self.legs.push(Leg {
                 first: 0,
-                episodes: next,
+                episodes,
                 engine: Engine::Gpu {
                     adapter: gpu.adapter().clone(),
                     batch: flyer.batch(),
@@ -273,7 +292,7 @@ impl Flight {
                 },
             });
         }
-        failure
+        failure.filter(|_| !self.watch.is_done())
     }
 
     /// Flies the episodes that are left on the CPU.
@@ -285,24 +304,29 @@ impl Flight {
         done: &(dyn Fn(u32) + Sync),
     ) {
         let first = self.episodes();
-        if first == campaign.episodes {
+        if first == campaign.episodes || self.watch.is_done() {
             return;
         }
         let start = Instant::now();
         let cpu = Cpu::new(campaign, &gains.loops(), settings.precision, settings.simd);
         self.times.loop_s += start.elapsed().as_secs_f64();
+        let batch = match &campaign.stop {
+            None => CPU_BATCH,
+            // Little is flown in vain if batches are as short as the threads and the looks allow.
+            Some(stop) => stop.every.clamp(LOOK_BATCH, CPU_BATCH),
+        };
         let mut next = first;
-        while next < campaign.episodes {
-            let until = next.saturating_add(CPU_BATCH).min(campaign.episodes);
+        while next < campaign.episodes && !self.watch.is_done() {
+            let until = next.saturating_add(batch).min(campaign.episodes);
             let start = Instant::now();
             let flown = self.pool.install(|| cpu.fly(next..until, done));
             self.times.loop_s += start.elapsed().as_secs_f64();
-            self.times.statistics_s += fill(&mut self.tables, campaign, &flown);
+            self.times.statistics_s += fill(&mut self.tables, &mut self.watch, campaign, &flown);
             next = until;
         }
         self.legs.push(Leg {
             first,
-            episodes: campaign.episodes - first,
+            episodes: self.recorded() - first,
             engine: Engine::Cpu {
                 simd: cpu.simd(),
                 threads: self.pool.current_num_threads(),
@@ -311,11 +335,16 @@ impl Flight {
     }
 }
 
-/// Adds flown episodes to the tables; the time that it took, s.
-fn fill(tables: &mut Tables, campaign: &Campaign, flown: &[Flown]) -> f64 {
+/// Adds flown episodes to the tables, until the watch has seen enough; the time that it took, s.
+fn fill(tables: &mut Tables, watch: &mut Watch, campaign: &Campaign, flown: &[Flown]) -> f64 {
     let start = Instant::now();
     for episode in flown {
+        if watch.is_done() {
+            break;
+        }
         tables.add(campaign, episode);
+        let status = &tables.scores.status;
+        watch.take(|controller| status[controller].last().copied().unwrap_or(Status::Ok));
     }
     start.elapsed().as_secs_f64()
 }

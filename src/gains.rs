@@ -12,7 +12,7 @@ use crate::synthesis::{
     SolverReport, SynthesisError, loop_gains, poles, synthesize,
 };
 use nalgebra::Complex;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -80,6 +80,15 @@ pub struct FlyingController {
     pub groups: Vec<ChannelController>,
 }
 
+impl FlyingController {
+    /// Whether its gains have a certificate: whether it estimates the faults.
+    #[must_use]
+    pub fn is_certified(&self) -> bool {
+        let mut groups = self.groups.iter();
+        groups.any(|group| group.certificate().is_some())
+    }
+}
+
 /// A controller on one channel group.
 #[derive(Debug, Clone)]
 pub struct ChannelController {
@@ -87,12 +96,22 @@ pub struct ChannelController {
     pub gains: ControllerGains,
     /// The gains as integrated.
     pub loop_gains: LoopGains,
-    /// What was found about them; none for gains read back from a run, which were verified then.
+    /// What was found about them; for gains read back from a run what the run wrote, where it did.
     pub findings: Option<Findings>,
 }
 
+impl ChannelController {
+    /// The certificate of its gains, where it has one that is at hand.
+    #[must_use]
+    pub fn certificate(&self) -> Option<&Certificate> {
+        let findings = self.findings.as_ref()?;
+        findings.certificate.as_ref()
+    }
+}
+
 /// What synthesis and verification found about the gains of one controller on one channel group.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Findings {
     /// Poles and margins.
     pub analysis: LoopAnalysis,

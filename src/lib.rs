@@ -5,7 +5,7 @@
 //! and values move forward only:
 //!
 //! ```text
-//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables
+//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
 //!          -> comparison, ranking (statistics) -> output
 //! ```
 //!
@@ -17,6 +17,7 @@
 //! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when complete.
 //! - The library does not print, does not exit and does not panic on input.
 
+pub mod attenuation;
 pub mod backend;
 pub mod campaign;
 pub mod comparison;
@@ -35,5 +36,6 @@ pub mod robot;
 pub mod run;
 pub mod sampling;
 pub mod statistics;
+pub mod stop;
 pub mod synthesis;
 pub mod tables;

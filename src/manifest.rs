@@ -5,6 +5,7 @@ use crate::campaign::Campaign;
 use crate::cross_check::CrossCheck;
 use crate::flight::Leg;
 use crate::output::{MANIFEST, OutputError};
+use crate::stop::Stopped;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -32,7 +33,9 @@ pub struct Manifest {
     pub episodes: u32,
     /// Episodes that were asked for.
     pub episodes_asked: u32,
-    /// Why fewer were flown, if so.
+    /// What the campaign's `[stop]` knows at the end, and whether it ended the run.
+    pub stopped: Option<Stopped>,
+    /// Why fewer were flown than that, if so.
     pub interrupted: Option<String>,
     /// Number format of the episode loop.
     pub precision: Precision,

@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// The tables of a run; not every run writes all of them.
-pub const TABLES: [&str; 6] = [
+pub const TABLES: [&str; 7] = [
     "episodes",
     "channels",
     "summary",
     "comparison",
+    "screening",
     "ranking",
     "worst",
 ];

@@ -1,8 +1,10 @@
 //! Which condition breaks it: the effect of what was drawn on how the controllers fared, and the worst episodes.
 
-use crate::campaign::{Campaign, ChannelGroup};
+use crate::campaign::{Campaign, ChannelGroup, Stratum, StratumFaults};
 use crate::comparison::{LEVEL, Layout, log_ratios, team_rmse};
-use crate::statistics::{Effect, Outcome, Permutations, Ranked, effects, holm};
+use crate::conditions::fault_of;
+use crate::sampling::{Method, allows};
+use crate::statistics::{Effect, Interval, Outcome, Permutations, Ranked, effects, holm};
 use crate::tables::{Scores, Status, Table};
 use std::sync::Arc;
 
@@ -33,8 +35,11 @@ pub struct RankedCondition {
     pub condition: String,
     /// The effect: [`crate::statistics::somers_d`] on failures, Spearman's rank correlation on all else.
     pub effect: Effect,
-    /// p-value of no effect, after Holm's correction for all conditions of the target.
-    pub p_holm: f64,
+    /// Interval of the trend, of independent draws.
+    pub interval: Option<Interval>,
+    /// p-value of no effect, after Holm's correction for all conditions of the target; where permutations are a test of it: of
+    /// independent draws and within one hypercube.
+    pub p_holm: Option<f64>,
 }
 
 /// A bad episode.
@@ -64,13 +69,19 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
     let named: Vec<(&String, Ranked)> = scores
         .conditions
         .iter()
-        .filter_map(|(name, values)| Some((name, Ranked::of(values)?)))
+        .filter_map(|(name, values)| Some((name, Ranked::of(&drawn(campaign, name, values))?)))
         .filter(|(_, values)| values.distinct() > 1)
         .collect();
     let (names, columns): (Vec<&String>, Vec<Ranked>) = named.into_iter().unzip();
+    let (sampling, design) = (campaign.sampling, campaign.sampling.design());
+    let with_interval = allows(design, Method::EffectInterval);
+    let one = sampling
+        .replicates()
+        .is_none_or(|replicates| replicates == 1);
+    let tested = one && allows(design, Method::EffectTest);
     let permutations = Permutations {
         seed: campaign.seed,
-        most: PERMUTATIONS,
+        most: if tested { PERMUTATIONS } else { 0 },
     };
     let of_target = |(target, outcome): (Target, Outcome)| {
         let effects = effects(&columns, &outcome, LEVEL, permutations);
@@ -87,7 +98,8 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
                 target: target.clone(),
                 condition: (*name).clone(),
                 effect,
-                p_holm,
+                interval: with_interval.then_some(effect.trend.interval),
+                p_holm: tested.then_some(p_holm),
             })
             .collect();
         let size = |ranked: &RankedCondition| ranked.effect.trend.value.abs();
@@ -97,6 +109,24 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
     targets(campaign, scores)
         .into_iter()
         .flat_map(of_target)
+        .collect()
+}
+
+/// A condition where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and what
+/// goes with the number (the first onset, the mean over more channels) would be taken for what goes with the stratum: where
+/// some strata draw their faults, faults are ranked in those only.
+fn drawn(campaign: &Campaign, condition: &str, values: &[Option<f64>]) -> Vec<Option<f64>> {
+    let draws = |stratum: &Stratum| stratum.faults == StratumFaults::Drawn;
+    let strata = &campaign.strata;
+    let only_drawn = match fault_of(condition) {
+        Some((_, "agents")) => !strata.is_empty(),
+        Some(_) => strata.all().iter().any(draws),
+        None => false,
+    };
+    let kept = |episode| !only_drawn || strata.of(episode).is_some_and(draws);
+    (0..)
+        .zip(values)
+        .map(|(episode, value)| value.filter(|_| kept(episode)))
         .collect()
 }
 
@@ -205,6 +235,7 @@ pub fn ranking_table(ranking: &[RankedCondition]) -> Table {
         target,
         condition,
         effect,
+        interval,
         p_holm,
     } in ranking
     {
@@ -219,12 +250,12 @@ pub fn ranking_table(ranking: &[RankedCondition]) -> Table {
             .name(|| "condition".into(), condition.as_str().into())
             .count(|| "episodes".into(), effect.n as u64)
             .real(|| "trend".into(), effect.trend.value)
-            .real(|| "trend_lower".into(), effect.trend.interval.lower)
-            .real(|| "trend_upper".into(), effect.trend.interval.upper)
-            .real(|| "trend_p".into(), effect.trend_p)
+            .real_if("trend_lower", interval.map(|interval| interval.lower))
+            .real_if("trend_upper", interval.map(|interval| interval.upper))
+            .real_if("trend_p", p_holm.map(|_| effect.trend_p))
             .real(|| "shape".into(), effect.shape)
-            .real(|| "shape_p".into(), effect.shape_p)
-            .real(|| "p_holm".into(), *p_holm);
+            .real_if("shape_p", p_holm.map(|_| effect.shape_p))
+            .real_if("p_holm", *p_holm);
     }
     table
 }

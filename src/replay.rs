@@ -1,5 +1,6 @@
 //! One episode of a run again, with its trajectories.
 
+use crate::attenuation::{Attenuations, Witness};
 use crate::backend::cpu::{Cpu, Precision, Simd};
 use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
 use crate::campaign::{Campaign, CampaignError};
@@ -53,6 +54,8 @@ pub struct Replay {
     pub outcomes: Vec<AgentOutcome>,
     /// What every agent and channel showed.
     pub snapshots: Vec<Snapshot>,
+    /// What inequality (24) says about it, `[agent][channel]`, from a flight in double precision on the CPU.
+    pub attenuations: Attenuations,
 }
 
 /// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and shows it
@@ -73,16 +76,17 @@ pub fn replay(
         manifest.robot.as_deref(),
     )?;
     campaign.seed = manifest.seed;
-    campaign.episodes = manifest.episodes;
-    if episode >= campaign.episodes {
+    // What a design draws belongs to the number of episodes that was asked for.
+    campaign.episodes = manifest.episodes_asked;
+    if episode >= manifest.episodes {
         return Err(ReplayError::Usage {
             option: "--episode",
             value: episode.to_string(),
             limit: format!(
                 "the run has {} episodes, numbered from 0",
-                campaign.episodes
+                manifest.episodes
             ),
-            remedy: format!("use 0 to {}", campaign.episodes - 1),
+            remedy: format!("use 0 to {}", manifest.episodes.saturating_sub(1)),
         });
     }
     let index = campaign
@@ -101,7 +105,9 @@ pub fn replay(
         .legs
         .iter()
         .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
-    let fly = |precision, simd| on_cpu(&campaign, &gains, precision, simd, episode, index, every);
+    let fly_every =
+        |precision, simd, every| on_cpu(&campaign, &gains, precision, simd, episode, index, every);
+    let fly = |precision, simd| fly_every(precision, simd, every);
     // The reference, where what flew the run is not to be had.
     let stand_in = |reason: String| (fly(Precision::F64, None), Some(reason));
     let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
@@ -125,11 +131,14 @@ pub fn replay(
         }
     };
     let (outcomes, snapshots) = flown;
+    let witness = Witness::new(&campaign, &gains, index);
+    let attenuations = witness.of_episode(episode, || fly_every(Precision::F64, None, 1).1);
     Ok(Replay {
         campaign,
         stand_in,
         outcomes,
         snapshots,
+        attenuations,
     })
 }
 
@@ -170,6 +179,7 @@ fn on_gpu(
             snapshots.push(Snapshot {
                 step: instant.step,
                 agents: instant.agents(0, controller),
+                internals: Vec::new(),
             });
         })
         .map_err(|error| error.to_string())?;

@@ -2,7 +2,7 @@
 
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::{Agent, Campaign, Requirement};
-use crate::comparison::{self, FailureRate, MetricQuantiles, PairedComparison};
+use crate::comparison::{self, FailureRate, MetricQuantiles, PairedComparison, Screening};
 use crate::cross_check::{CrossCheck, cross_check};
 use crate::flight::{Engine, Flight, FlightError, Settings, fly, open};
 use crate::gains::{GainSet, GainsError};
@@ -52,6 +52,8 @@ pub struct Findings<'a> {
     pub summary: Vec<MetricQuantiles>,
     /// How every pair compares.
     pub comparisons: Vec<PairedComparison>,
+    /// What each stratum does to each controller.
+    pub screenings: Vec<Screening>,
     /// What each condition does to each controller and pair.
     pub ranking: Vec<RankedCondition>,
     /// The worst episodes of each controller.
@@ -118,6 +120,7 @@ pub fn run_on<'a>(
         };
     let Flight {
         tables,
+        watch,
         mut times,
         legs,
         interrupted,
@@ -143,6 +146,7 @@ pub fn run_on<'a>(
     let summary = comparison::summarise(campaign, &tables.scores);
     let comparisons = comparison::compare(campaign, &tables.scores);
     let unmet = comparison::unmet(campaign, &tables.scores);
+    let screenings = comparison::screen(campaign, &tables.scores);
     let ranking = flight
         .pool
         .install(|| ranking::rank(campaign, &tables.scores));
@@ -151,8 +155,9 @@ pub fn run_on<'a>(
 
     let start = Instant::now();
     out.begin()?;
-    let summary_table = comparison::summary_table(&summary);
-    let comparison_table = comparison::comparison_table(&comparisons);
+    let summary_table = comparison::summary_table(campaign, &summary);
+    let comparison_table = comparison::comparison_table(campaign, &comparisons);
+    let screening_table = comparison::screening_table(&screenings);
     let ranking_table = ranking::ranking_table(&ranking);
     let worst_table = ranking::worst_table(&worst);
     for (name, table, with_csv) in [
@@ -160,10 +165,12 @@ pub fn run_on<'a>(
         ("channels", &tables.channels, extras.csv),
         ("summary", &summary_table, true),
         ("comparison", &comparison_table, true),
+        ("screening", &screening_table, true),
         ("ranking", &ranking_table, true),
         ("worst", &worst_table, true),
     ] {
-        // One controller has nothing to be compared with; where nothing varies, nothing is ranked.
+        // One controller has nothing to be compared with; without strata nothing is screened; where nothing varies, nothing is
+        // ranked.
         if table.is_empty() {
             continue;
         }
@@ -188,6 +195,7 @@ pub fn run_on<'a>(
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,
+        stopped: watch.found(campaign),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: settings.precision,
         legs,
@@ -200,6 +208,7 @@ pub fn run_on<'a>(
     Ok(Findings {
         summary,
         comparisons,
+        screenings,
         ranking,
         worst,
         unmet,

@@ -1,16 +1,23 @@
 //! What the commands print.
 
+mod attenuation;
+mod caveats;
 mod devices;
 mod findings;
+mod findings_json;
 mod gains;
 mod plan;
 mod runs;
+mod screening;
+mod shortcomings;
 
 pub(crate) use devices::devices;
-pub(crate) use findings::{findings, findings_json, shortcoming, unmet};
+pub(crate) use findings::findings;
+pub(crate) use findings_json::findings_json;
 pub(crate) use gains::{gains, synthesis};
 pub(crate) use plan::{plan, plan_json};
 pub(crate) use runs::{runs, runs_json};
+pub(crate) use shortcomings::{shortcoming, unmet};
 
 use std::fmt::Write;
 use std::path::Path;
@@ -24,7 +31,8 @@ pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Pat
     line(
         &mut text,
         &format!(
-            "episode {episode} under {controller}: RMS error and largest error from settle_s on"
+            "episode {episode} under {controller}: RMS error and largest error from settle_s on{}",
+            attenuation::heading(&replay.attenuations)
         ),
     );
     for (agent, outcome) in replay.outcomes.iter().enumerate() {
@@ -40,16 +48,19 @@ pub(crate) fn replay(replay: &Replay, episode: u32, controller: &str, path: &Pat
             (false, None) => String::new(),
         };
         line(&mut text, &format!("  agent {agent}{ending}"));
-        for (name, metrics) in channels.iter().zip(&outcome.channels) {
+        for (channel, (name, metrics)) in channels.iter().zip(&outcome.channels).enumerate() {
             line(
                 &mut text,
                 &format!(
-                    "    {name:<width$} {:>10.5}  {:>10.5}",
-                    metrics.rmse, metrics.max_abs
+                    "    {name:<width$} {:>10.5}  {:>10.5}{}",
+                    metrics.rmse,
+                    metrics.max_abs,
+                    attenuation::of_channel(&replay.attenuations, agent, channel)
                 ),
             );
         }
     }
+    text.push_str(&attenuation::explanation(&replay.attenuations));
     if let Some(reason) = &replay.stand_in {
         line(
             &mut text,

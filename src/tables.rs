@@ -162,6 +162,12 @@ pub struct Scores {
 }
 
 impl Scores {
+    /// Episodes so far.
+    #[must_use]
+    pub fn episodes(&self) -> usize {
+        self.status.first().map_or(0, Vec::len)
+    }
+
     /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that are none
     /// are all alike.
     #[must_use]
@@ -244,6 +250,12 @@ impl Tables {
                 };
                 let mut row = self.episodes.row();
                 key(&mut row);
+                if let Some(stratum) = campaign.strata.of(flown.episode.index) {
+                    row.name(|| "stratum".into(), stratum.name.clone());
+                }
+                if let Some((replicate, _)) = campaign.sampling.place(flown.episode.index) {
+                    row.count(|| "replicate".into(), u64::from(replicate));
+                }
                 judged.write_agent(&mut row, campaign, worst, draw);
                 let channels = campaign.channels().iter();
                 for (channel, outcome) in channels.zip(&judged.outcome.channels) {
@@ -394,6 +406,10 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
         row.real(|| "inertia_scale".into(), draw.inertia_scale);
     }
     row.real(|| "kappa".into(), draw.kappa);
+    if campaign.control.delay_s.is_some() {
+        let steps = campaign.time.whole_steps(draw.control_delay_s);
+        row.real(|| "control_delay_s".into(), steps * campaign.time.step_s);
+    }
     let initial = [
         ("error", &draw.error),
         ("error_rate", &draw.error_rate),
@@ -411,32 +427,46 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
         .enumerate()
     {
         for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
-            write_channels(row, campaign, values, |channel| {
+            let acts = |channel: usize| disturbance.kind.acts_on(channel);
+            let applied = where_it(values, acts);
+            write_channels(row, campaign, &applied, |channel| {
                 format!("disturbance{index}_{}_{channel}", parameter.name)
             });
         }
     }
     for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
         row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
-        row.real(
-            || format!("fault{index}_onset_s"),
-            if drawn.occurs() {
-                f64::from(campaign.time.onset_step(drawn.onset_s)) * campaign.time.step_s
+        let (time, occurs) = (campaign.time, drawn.occurs());
+        let mut of_time = |name: &str, steps: f64| {
+            let length_s = if occurs {
+                steps * time.step_s
             } else {
                 f64::NAN
-            },
-        );
+            };
+            row.real(|| format!("fault{index}_{name}"), length_s);
+        };
+        of_time("onset_s", f64::from(time.onset_step(drawn.onset_s)));
+        if fault.duration_s.is_some() {
+            of_time("duration_s", time.whole_steps(drawn.duration_s));
+        }
+        if fault.ramp_s.is_some() {
+            of_time("ramp_s", (drawn.ramp_s / time.step_s).round());
+        }
         for (parameter, values) in fault.kind.parameters().iter().zip(&drawn.parameters) {
-            let applied: Vec<f64> = values
-                .iter()
-                .zip(&drawn.strikes)
-                .map(|(value, strikes)| if *strikes { *value } else { f64::NAN })
-                .collect();
+            let applied = where_it(values, |channel| drawn.strikes[channel]);
             write_channels(row, campaign, &applied, |channel| {
                 format!("fault{index}_{}_{channel}", parameter.name)
             });
         }
     }
+}
+
+/// The values of the channels on which something acts; not a number elsewhere.
+fn where_it(values: &[f64], acts: impl Fn(usize) -> bool) -> Vec<f64> {
+    let of_channels = values.iter().enumerate();
+    of_channels
+        .map(|(channel, &value)| if acts(channel) { value } else { f64::NAN })
+        .collect()
 }
 
 fn write_channels(

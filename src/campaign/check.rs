@@ -16,8 +16,12 @@ pub(super) enum Bounds {
     Positive,
     /// From 0 to 1.
     Share,
+    /// More than 0, at most 1.
+    Chance,
     /// From a smallest value on.
     AtLeast(f64),
+    /// From a smallest value to a largest.
+    Between(f64, f64),
 }
 
 impl Bounds {
@@ -26,6 +30,10 @@ impl Bounds {
             Self::NonNegative if low < 0.0 => "must not be negative".into(),
             Self::Positive if low <= 0.0 => "must be positive".into(),
             Self::Share if low < 0.0 || high > 1.0 => "must lie within [0, 1]".into(),
+            Self::Chance if low <= 0.0 || high > 1.0 => "must be more than 0 and at most 1".into(),
+            Self::Between(least, most) if low < least || high > most => {
+                format!("must lie within [{least}, {most}]")
+            }
             Self::AtLeast(least) if low < least => format!("must be at least {least:e}"),
             _ => return None,
         };
@@ -40,14 +48,27 @@ pub struct Parameter {
     pub name: &'static str,
     pub(super) default: Option<f64>,
     pub(super) bounds: Bounds,
+    /// Who shares a draw, if the file does not say it: each channel has its own, or the agent one.
+    pub(super) per: Per,
 }
 
-/// A parameter that has to be given.
+/// A parameter of each channel that has to be given.
 pub(super) const fn required(name: &'static str, bounds: Bounds) -> Parameter {
     Parameter {
         name,
         default: None,
         bounds,
+        per: Per::Channel,
+    }
+}
+
+/// A parameter of the whole agent that has to be given.
+pub(super) const fn of_agent(name: &'static str, bounds: Bounds) -> Parameter {
+    Parameter {
+        name,
+        default: None,
+        bounds,
+        per: Per::Agent,
     }
 }
 
@@ -73,9 +94,13 @@ macro_rules! parameters {
 }
 parameters!(InitialFile: error, error_rate, error_integral);
 parameters!(InitialBlock: error, error_rate, error_integral);
-parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale);
-parameters!(FaultFile: magnitude, amplitude, period_s, smoothing, phase_rad, std);
-parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std, scale);
+parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale, speed_m_s, gain_n_s_m, onset_s, duration_s,
+    wind_m_s, altitude_m, airspeed_m_s);
+parameters!(FaultFile: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
+    burst_s, share, mass_kg, offset_x_m, offset_y_m);
+parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std, scale, speed_m_s,
+    gain_n_s_m, onset_s, duration_s, wind_m_s, altitude_m, airspeed_m_s, rate, delay_s, window_s, burst_s, share, mass_kg,
+    offset_x_m, offset_y_m);
 
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
@@ -183,6 +208,9 @@ impl Check<'_> {
                 format!("{table}.{name}")
             };
             let value = own.or_else(|| base.and_then(|base| base.parameter(name)));
+            if parameter.per != Per::Channel {
+                self.is_of_agent(&key, value)?;
+            }
             for channel in 0..self.channels.len() {
                 let (distribution, own_per) =
                     self.channel_value(&key, value, parameter, channel)?;
@@ -193,8 +221,27 @@ impl Check<'_> {
                 drawn.distributions.push(distribution);
             }
         }
-        drawn.per = per.flatten().unwrap_or(Per::Channel);
+        drawn.per = per.flatten().unwrap_or(parameter.per);
         Ok(drawn)
+    }
+
+    /// Refuses values that differ from channel to channel.
+    fn is_of_agent(&self, key: &str, value: Option<&Value>) -> Result<(), CampaignError> {
+        let (key, shown, remedy) = match value {
+            Some(Value::List(list)) => (
+                key.to_string(),
+                format!("a list of {}", list.len()),
+                "give one number or distribution",
+            ),
+            Some(Value::Distribution(file)) if file.per == Some(Per::Channel) => (
+                format!("{key}.per"),
+                "\"channel\"".to_string(),
+                "use \"episode\" or \"agent\"",
+            ),
+            _ => return Ok(()),
+        };
+        let limit = "this is a quantity of the agent, not of its channels";
+        Err(self.invalid(key, shown, limit, remedy))
     }
 
     /// A quantity of each agent.
@@ -207,28 +254,14 @@ impl Check<'_> {
         bounds: Bounds,
         team: usize,
     ) -> Result<Drawn, CampaignError> {
-        if let Some(Value::List(list)) = value {
-            return Err(self.invalid(
-                key,
-                format!("a list of {}", list.len()),
-                "this is a quantity of the agent, not of its channels",
-                "give one number or distribution",
-            ));
-        }
+        self.is_of_agent(key, value)?;
         let parameter = Parameter {
             name: "",
             default,
             bounds,
+            per: default_per,
         };
         let (distribution, per) = self.channel_value(key, value, parameter, 0)?;
-        if per == Some(Per::Channel) {
-            return Err(self.invalid(
-                format!("{key}.per"),
-                "\"channel\"",
-                "this is a quantity of the agent, not of its channels",
-                "use \"episode\" or \"agent\"",
-            ));
-        }
         Ok(Drawn {
             per: per.unwrap_or(default_per),
             channels: 1,

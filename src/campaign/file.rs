@@ -1,8 +1,12 @@
 //! The campaign file as it is written: one struct per TOML table, nothing checked but names and types.
 //! [`super::Campaign`] is what the rest of the program sees.
 
+mod plan;
+mod signals;
 mod value;
 
+pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
+pub use signals::*;
 pub(super) use value::in_toml;
 pub use value::{
     ChannelsFile, DistributionFile, NormalFile, Numbers, Per, TruncatedNormalFile, Value,
@@ -37,6 +41,9 @@ pub struct CampaignFile {
     /// How the gains are found.
     #[serde(deserialize_with = "table")]
     pub synthesis: SynthesisFile,
+    /// What is between measurement and command, beside the controller.
+    #[serde(default, deserialize_with = "some_table")]
+    pub control: Option<ControlFile>,
     /// Initial errors.
     #[serde(default, deserialize_with = "some_table")]
     pub initial: Option<InitialFile>,
@@ -46,9 +53,18 @@ pub struct CampaignFile {
     /// External disturbances d1, summed.
     #[serde(default, deserialize_with = "tables")]
     pub disturbance: Vec<DisturbanceFile>,
-    /// Actuator and sensor faults.
+    /// Faults of actuators, sensors, the network and the plant.
     #[serde(default, deserialize_with = "tables")]
     pub fault: Vec<FaultFile>,
+    /// Parts of the episodes with faults of their own (default: all episodes draw all faults).
+    #[serde(default, deserialize_with = "tables")]
+    pub strata: Vec<StratumFile>,
+    /// How the random numbers of the episodes are chosen.
+    #[serde(default, deserialize_with = "some_table")]
+    pub sampling: Option<SamplingFile>,
+    /// When the run may end before its last episode (default: never).
+    #[serde(default, deserialize_with = "some_table")]
+    pub stop: Option<StopFile>,
     /// What counts as failure.
     #[serde(default, deserialize_with = "some_table")]
     pub verdict: Option<VerdictFile>,
@@ -344,114 +360,40 @@ pub enum ObserverStart {
 pub struct CouplingFile {
     /// Strength of the coupling (10) or (11): N/m^2 and N m/rad^2 on the channels of a UAV, N m/rad^2 on a biped's.
     pub kappa: Value,
+    /// From where x is counted (default "absolute").
+    pub coordinates: Option<CouplingCoordinates>,
 }
 
-/// `[[disturbance]]`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DisturbanceFile {
-    /// Form of the disturbance.
-    pub kind: DisturbanceKind,
-    /// Amplitude or constant value, N or N m.
-    pub amplitude: Option<Value>,
-    /// Sine: angular frequency, rad/s.
-    pub frequency_rad_s: Option<Value>,
-    /// Sine: phase at t = 0, rad (default 0).
-    pub phase_rad: Option<Value>,
-    /// Ground reaction: share of the series that acts (default 1).
-    pub scale: Option<Value>,
-    /// Blocks that override the keys above, one per agent.
-    #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<SignalBlock>>,
-}
-
-/// Forms of a disturbance.
+/// From where the coupling counts x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum DisturbanceKind {
-    /// amplitude sin(frequency t + phase).
-    Sine,
-    /// A constant.
-    Constant,
-    /// Biped: the torques J'f with which the ground answers the walk.
-    GroundReaction,
+pub enum CouplingCoordinates {
+    /// From the origin, as (10) and (11) are printed.
+    Absolute,
+    /// From the team's centroid, so that where the team is does not matter.
+    Centroid,
 }
 
-/// `[[fault]]`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FaultFile {
-    /// What fails.
-    pub target: FaultTarget,
-    /// How it fails.
-    pub kind: FaultKind,
-    /// Probability that an agent has this fault (default 1).
-    pub probability: Option<f64>,
-    /// The channels that fail (default "all").
-    pub channels: Option<ChannelsFile>,
-    /// Beginning, s (default 0).
-    pub onset_s: Option<Value>,
-    /// Loss: lost share of the command; bias: N, N m, m or rad.
-    pub magnitude: Option<Value>,
-    /// Smoothed square: amplitude, m or rad.
-    pub amplitude: Option<Value>,
-    /// Smoothed square: period, s.
-    pub period_s: Option<Value>,
-    /// Smoothed square: tau of tanh(sin(..)/tau).
-    pub smoothing: Option<Value>,
-    /// Smoothed square: phase at t = 0, rad (default 0).
-    pub phase_rad: Option<Value>,
-    /// Noise: standard deviation, m or rad.
-    pub std: Option<Value>,
-    /// Blocks that override the parameters above, one per agent.
-    #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<SignalBlock>>,
-}
-
-/// One agent's parameters of a disturbance or fault; what is absent is taken from the table around it.
+/// `[control]`
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SignalBlock {
-    /// Amplitude.
-    pub amplitude: Option<Value>,
-    /// Angular frequency, rad/s.
-    pub frequency_rad_s: Option<Value>,
-    /// Phase at t = 0, rad.
-    pub phase_rad: Option<Value>,
-    /// Magnitude.
-    pub magnitude: Option<Value>,
-    /// Period, s.
-    pub period_s: Option<Value>,
-    /// tau of tanh(sin(..)/tau).
-    pub smoothing: Option<Value>,
-    /// Standard deviation.
-    pub std: Option<Value>,
-    /// Share of the ground reaction.
-    pub scale: Option<Value>,
+pub struct ControlFile {
+    /// What the first output integrates (default "exact").
+    pub integral: Option<IntegralKind>,
+    /// Time that a command takes to the actuator, s; whole steps (default: none).
+    pub delay_s: Option<Value>,
+    /// Commands per second, held in between; whole steps (default: a command at every instant).
+    pub rate_hz: Option<f64>,
 }
 
-/// What fails.
+/// What the first output integrates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum FaultTarget {
-    /// The command on its way to the plant.
-    Actuator,
-    /// The measurement on its way to the observer.
+pub enum IntegralKind {
+    /// x itself, as in the paper.
+    Exact,
+    /// What the sensor measures of x.
     Sensor,
-}
-
-/// How it fails.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum FaultKind {
-    /// Actuator: (1 - magnitude) u.
-    LossOfEffectiveness,
-    /// Actuator or sensor: a constant offset.
-    Bias,
-    /// Sensor: amplitude tanh(sin(2 pi t / period + phase) / smoothing).
-    SmoothedSquare,
-    /// Sensor: normal noise, held over a step.
-    Noise,
 }
 
 /// `[verdict]`
@@ -464,14 +406,4 @@ pub struct VerdictFile {
     pub max_rmse: Option<Numbers>,
     /// |e| at or below this counts as settled, m or rad (default 0.05).
     pub settled_error: Option<Numbers>,
-}
-
-/// `[[require]]`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RequireFile {
-    /// The controller that has to meet it.
-    pub controller: String,
-    /// Upper limit of the one-sided 95 % Clopper-Pearson bound of the failure rate.
-    pub failure_rate_upper_95: f64,
 }

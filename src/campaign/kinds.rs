@@ -1,15 +1,38 @@
 //! The parameters of every kind of disturbance and fault, by name: one list serves validation, draws and tables.
 
-use super::check::{Bounds, Parameter, required};
-use super::file::{DisturbanceKind, FaultKind, FaultTarget};
+use super::agent::FIRST_ATTITUDE;
+use super::check::{Bounds, Parameter, of_agent, required};
+use super::file::{DisturbanceKind, FaultKind, FaultTarget, Per};
 
 const PHASE: Parameter = Parameter {
     name: "phase_rad",
     default: Some(0.0),
     bounds: Bounds::Any,
+    per: Per::Channel,
 };
 
 impl DisturbanceKind {
+    /// The name of this kind in a campaign file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sine => "sine",
+            Self::Constant => "constant",
+            Self::Gust1Cosine => "gust-1-cosine",
+            Self::Dryden => "dryden",
+            Self::GroundReaction => "ground-reaction",
+        }
+    }
+
+    /// Whether it acts on a channel: wind does on those of translation alone.
+    #[must_use]
+    pub fn acts_on(self, channel: usize) -> bool {
+        match self {
+            Self::Gust1Cosine | Self::Dryden => channel < FIRST_ATTITUDE,
+            Self::Sine | Self::Constant | Self::GroundReaction => true,
+        }
+    }
+
     /// The parameters of this kind.
     #[must_use]
     pub fn parameters(self) -> &'static [Parameter] {
@@ -24,12 +47,33 @@ impl DisturbanceKind {
                 }
             }
             Self::Constant => const { &[required("amplitude", Bounds::Any)] },
+            Self::Gust1Cosine => {
+                const {
+                    &[
+                        required("speed_m_s", Bounds::Any),
+                        required("gain_n_s_m", Bounds::NonNegative),
+                        of_agent("onset_s", Bounds::NonNegative),
+                        of_agent("duration_s", Bounds::Positive),
+                    ]
+                }
+            }
+            Self::Dryden => {
+                const {
+                    &[
+                        of_agent("wind_m_s", Bounds::NonNegative),
+                        of_agent("altitude_m", Bounds::Between(3.0, 305.0)),
+                        of_agent("airspeed_m_s", Bounds::AtLeast(0.5)),
+                        required("gain_n_s_m", Bounds::NonNegative),
+                    ]
+                }
+            }
             Self::GroundReaction => {
                 const {
                     &[Parameter {
                         name: "scale",
                         default: Some(1.0),
                         bounds: Bounds::Any,
+                        per: Per::Channel,
                     }]
                 }
             }
@@ -37,14 +81,105 @@ impl DisturbanceKind {
     }
 }
 
+const MAGNITUDE: Parameter = required("magnitude", Bounds::Any);
+/// Length of the slots of time that are hit or not.
+const SLOT: Parameter = of_agent("burst_s", Bounds::Positive);
+/// Share of the slots that are hit.
+const SHARE: Parameter = of_agent("share", Bounds::Chance);
+const OFFSET_X: Parameter = of_agent("offset_x_m", Bounds::Any);
+const OFFSET_Y: Parameter = of_agent("offset_y_m", Bounds::Any);
+
+/// What a kind of fault is: its name in a campaign file, what it strikes, its parameters.
+type Described = (&'static str, &'static [FaultTarget], &'static [Parameter]);
+
 impl FaultKind {
-    /// The parameters of this kind.
-    #[must_use]
-    pub fn parameters(self) -> &'static [Parameter] {
+    /// All kinds.
+    pub const ALL: [Self; 24] = [
+        Self::LossOfEffectiveness,
+        Self::Bias,
+        Self::Stuck,
+        Self::Float,
+        Self::HardOver,
+        Self::Oscillatory,
+        Self::Intermittent,
+        Self::RateLimit,
+        Self::Delay,
+        Self::Drift,
+        Self::Scale,
+        Self::Noise,
+        Self::Freeze,
+        Self::Dropout,
+        Self::Outlier,
+        Self::SmoothedSquare,
+        Self::DenialOfService,
+        Self::Replay,
+        Self::Interference,
+        Self::Mass,
+        Self::Inertia,
+        Self::CenterOfMass,
+        Self::Payload,
+        Self::FalseData,
+    ];
+
+    const fn described(self) -> Described {
+        use FaultTarget::{Actuator, Network, Plant, Sensor};
         match self {
-            Self::LossOfEffectiveness => const { &[required("magnitude", Bounds::Share)] },
-            Self::Bias => const { &[required("magnitude", Bounds::Any)] },
-            Self::SmoothedSquare => {
+            Self::LossOfEffectiveness => (
+                "loss-of-effectiveness",
+                &[Actuator],
+                const { &[required("magnitude", Bounds::Share)] },
+            ),
+            Self::Bias => ("bias", &[Actuator, Sensor], const { &[MAGNITUDE] }),
+            Self::Stuck => ("stuck", &[Actuator], &[]),
+            Self::Float => ("float", &[Actuator], &[]),
+            Self::HardOver => ("hard-over", &[Actuator], const { &[MAGNITUDE] }),
+            Self::Oscillatory => (
+                "oscillatory",
+                &[Actuator, Sensor, Network],
+                const {
+                    &[
+                        required("amplitude", Bounds::Any),
+                        required("frequency_rad_s", Bounds::NonNegative),
+                        PHASE,
+                    ]
+                },
+            ),
+            Self::Intermittent => (
+                "intermittent",
+                &[Actuator],
+                const { &[required("magnitude", Bounds::Share), SLOT, SHARE] },
+            ),
+            Self::RateLimit => (
+                "rate-limit",
+                &[Actuator],
+                const { &[required("rate", Bounds::NonNegative)] },
+            ),
+            Self::Delay => (
+                "delay",
+                &[Actuator, Sensor, Network],
+                const { &[of_agent("delay_s", Bounds::Positive)] },
+            ),
+            Self::Drift => (
+                "drift",
+                &[Actuator, Sensor, Network],
+                const { &[required("rate", Bounds::Any)] },
+            ),
+            Self::Scale => ("scale", &[Sensor], const { &[MAGNITUDE] }),
+            Self::Noise => (
+                "noise",
+                &[Sensor],
+                const { &[required("std", Bounds::NonNegative)] },
+            ),
+            Self::Freeze => ("freeze", &[Sensor], &[]),
+            Self::Dropout => ("dropout", &[Sensor], const { &[SLOT, SHARE] }),
+            Self::Outlier => (
+                "outlier",
+                &[Sensor],
+                const { &[required("amplitude", Bounds::Any), SHARE] },
+            ),
+            Self::SmoothedSquare => (
+                "smoothed-square",
+                &[Sensor],
                 const {
                     &[
                         required("amplitude", Bounds::Any),
@@ -52,29 +187,95 @@ impl FaultKind {
                         required("smoothing", Bounds::AtLeast(1e-6)),
                         PHASE,
                     ]
-                }
-            }
-            Self::Noise => const { &[required("std", Bounds::NonNegative)] },
+                },
+            ),
+            Self::FalseData => ("false-data", &[Network], const { &[MAGNITUDE] }),
+            Self::DenialOfService => ("denial-of-service", &[Network], const { &[SLOT, SHARE] }),
+            Self::Replay => (
+                "replay",
+                &[Network],
+                const { &[of_agent("window_s", Bounds::Positive)] },
+            ),
+            Self::Interference => ("interference", &[Network], const { &[MAGNITUDE] }),
+            Self::Mass => (
+                "mass",
+                &[Plant],
+                const { &[of_agent("magnitude", Bounds::AtLeast(-0.9))] },
+            ),
+            Self::Inertia => (
+                "inertia",
+                &[Plant],
+                const { &[of_agent("magnitude", Bounds::AtLeast(-0.9))] },
+            ),
+            Self::CenterOfMass => ("center-of-mass", &[Plant], const { &[OFFSET_X, OFFSET_Y] }),
+            Self::Payload => (
+                "payload",
+                &[Plant],
+                const { &[of_agent("mass_kg", Bounds::NonNegative), OFFSET_X, OFFSET_Y] },
+            ),
         }
+    }
+
+    /// The parameters of this kind.
+    #[must_use]
+    pub const fn parameters(self) -> &'static [Parameter] {
+        self.described().2
     }
 
     /// The name of this kind in a campaign file.
     #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::LossOfEffectiveness => "loss-of-effectiveness",
-            Self::Bias => "bias",
-            Self::SmoothedSquare => "smoothed-square",
-            Self::Noise => "noise",
-        }
+    pub const fn name(self) -> &'static str {
+        self.described().0
     }
 
     /// Whether this kind can strike the target.
-    pub(super) fn strikes(self, target: FaultTarget) -> bool {
+    #[must_use]
+    pub fn strikes(self, target: FaultTarget) -> bool {
+        self.described().1.contains(&target)
+    }
+
+    /// Whether it can come little by little.
+    #[must_use]
+    pub fn can_ramp(self) -> bool {
         match self {
-            Self::LossOfEffectiveness => target == FaultTarget::Actuator,
-            Self::Bias => true,
-            Self::SmoothedSquare | Self::Noise => target == FaultTarget::Sensor,
+            Self::LossOfEffectiveness
+            | Self::Bias
+            | Self::Float
+            | Self::HardOver
+            | Self::Oscillatory
+            | Self::Intermittent
+            | Self::Scale
+            | Self::Noise
+            | Self::Outlier
+            | Self::SmoothedSquare
+            | Self::FalseData
+            | Self::Interference
+            | Self::Mass
+            | Self::Inertia
+            | Self::CenterOfMass
+            | Self::Payload => true,
+            // These are there or not; a drift is a ramp.
+            Self::Stuck
+            | Self::RateLimit
+            | Self::Delay
+            | Self::Drift
+            | Self::Freeze
+            | Self::Dropout
+            | Self::DenialOfService
+            | Self::Replay => false,
+        }
+    }
+}
+
+impl FaultTarget {
+    /// The name of this target in a campaign file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Actuator => "actuator",
+            Self::Sensor => "sensor",
+            Self::Network => "network",
+            Self::Plant => "plant",
         }
     }
 }

@@ -6,13 +6,18 @@ pub mod distribution;
 pub mod error;
 pub mod file;
 mod kinds;
+mod plan;
 mod validate;
 
 pub use agent::{Agent, Biped, ChannelGroup, FIRST_ATTITUDE, RobotFile, Uav};
 pub use check::Parameter;
 pub use distribution::Distribution;
 pub use error::CampaignError;
-pub use file::{ActuationKind, DisturbanceKind, FaultKind, FaultTarget, ObserverStart, Per};
+pub use file::{
+    ActuationKind, CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind,
+    Link, ObserverStart, Per,
+};
+pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 
 use crate::reference::Reference;
 use std::path::{Path, PathBuf};
@@ -58,12 +63,22 @@ pub struct Campaign {
     pub inertia_scale: Drawn,
     /// Coupling strength, per agent.
     pub kappa: Drawn,
+    /// From where the coupling counts x.
+    pub coordinates: CouplingCoordinates,
+    /// What is between measurement and command, beside the controller.
+    pub control: Control,
     /// Initial errors.
     pub initial: Initial,
     /// External disturbances, summed.
     pub disturbances: Vec<Disturbance>,
     /// Faults.
     pub faults: Vec<Fault>,
+    /// Parts of the episodes with faults of their own.
+    pub strata: Strata,
+    /// How the random numbers of the episodes are chosen.
+    pub sampling: Sampling,
+    /// When the run may end early, if it may.
+    pub stop: Option<Stop>,
     /// What counts as failure.
     pub verdict: Verdict,
     /// Conditions on the result.
@@ -140,6 +155,21 @@ impl Campaign {
         validate::validate(file, text, path, robot)
     }
 
+    /// Flies another number of episodes than the file's.
+    ///
+    /// # Errors
+    /// If the sampling design cannot divide so many into equal replicates.
+    pub fn set_episodes(&mut self, episodes: u32) -> Result<(), CampaignError> {
+        let check = check::Check {
+            path: &self.path,
+            text: &self.text,
+            channels: Vec::new(),
+        };
+        check.divides(self.sampling, episodes)?;
+        self.episodes = episodes;
+        Ok(())
+    }
+
     /// The JSON Schema of the campaign file.
     #[must_use]
     pub fn schema() -> serde_json::Value {
@@ -194,6 +224,12 @@ impl Time {
     pub fn onset_step(&self, onset_s: f64) -> u32 {
         (onset_s / self.step_s - 1e-9).ceil().max(0.0) as u32
     }
+
+    /// A length of time in steps: the nearest number of them, at least one.
+    #[must_use]
+    pub fn whole_steps(&self, length_s: f64) -> f64 {
+        (length_s / self.step_s).round().max(1.0)
+    }
 }
 
 /// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
@@ -221,6 +257,17 @@ impl Drawn {
     }
 }
 
+/// What is between measurement and command, beside the controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// What the first output integrates.
+    pub integral: IntegralKind,
+    /// Time that a command takes to the actuator, s; per agent.
+    pub delay_s: Option<Drawn>,
+    /// Steps for which a command is held; 1 for a controller that never rests.
+    pub hold_steps: u32,
+}
+
 /// Initial errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
@@ -243,11 +290,15 @@ pub struct Disturbance {
     pub parameters: Vec<Drawn>,
 }
 
-/// An actuator or sensor fault.
+/// A fault of an actuator, a sensor, the network or the plant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
+    /// Its name, different from all others.
+    pub name: Arc<str>,
     /// What fails.
     pub target: FaultTarget,
+    /// Which way between controller and plant, if it strikes one.
+    pub link: Link,
     /// How.
     pub kind: FaultKind,
     /// Probability that an agent has it.
@@ -256,6 +307,10 @@ pub struct Fault {
     pub channels: FaultChannels,
     /// When, s; one value per agent.
     pub onset_s: Drawn,
+    /// How long, s; one value per agent. None: to the end.
+    pub duration_s: Option<Drawn>,
+    /// The time in which it comes, s; one value per agent. None: at once.
+    pub ramp_s: Option<Drawn>,
     /// Its parameters, in the order of [`FaultKind::parameters`].
     pub parameters: Vec<Drawn>,
 }
@@ -296,7 +351,10 @@ pub struct Verdict {
 pub struct Requirement {
     /// The controller that has to meet it.
     pub controller: String,
-    /// Upper limit of the one-sided 95 % Clopper-Pearson bound of the failure rate.
+    /// The stratum in which it has to, or [`ALL`] episodes.
+    pub stratum: Arc<str>,
+    /// Upper limit of the one-sided 95 % bound of the failure rate: Clopper-Pearson's, or that of the confidence sequence where
+    /// `[stop]` decides on the number of episodes.
     pub failure_rate_upper_95: f64,
 }
 

@@ -2,14 +2,16 @@
 //! later.
 
 mod agent;
+mod plan;
 mod reference;
+mod sampling;
 mod signals;
 mod synthesis;
 
 use super::check::{Bounds, Check, Parameter};
 use super::error::CampaignError;
 use super::file::*;
-use super::{Agent, Campaign, Initial, Requirement, Time, Verdict};
+use super::{Agent, Campaign, Control, Initial, Time, Verdict};
 use std::path::Path;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
@@ -61,14 +63,18 @@ pub(super) fn validate(
         )
     };
     let synthesis = check.synthesis(&file.synthesis, &agent)?;
+    let fault_names = check.fault_names(&file.fault)?;
     let controllers = check.controllers(file.controllers.as_deref(), &synthesis)?;
+    let strata = check.strata(&file.strata, &fault_names, file.episodes)?;
+    let sampling = check.sampling(&file)?;
     Ok(Campaign {
         path: path.to_path_buf(),
         text: text.to_string(),
-        name: file.name,
+        name: file.name.clone(),
         seed: file.seed,
         episodes: file.episodes,
-        requirements: check.requirements(&file.require, &controllers)?,
+        requirements: check.requirements(&file.require, &controllers, &strata, sampling)?,
+        stop: check.stop(&file, &controllers, sampling)?,
         controllers,
         time,
         team,
@@ -84,6 +90,12 @@ pub(super) fn validate(
             Bounds::Any,
             team,
         )?,
+        coordinates: file
+            .coupling
+            .as_ref()
+            .and_then(|coupling| coupling.coordinates)
+            .unwrap_or(CouplingCoordinates::Absolute),
+        control: check.control(&file.control.unwrap_or_default(), team, time)?,
         initial: check.initial(file.initial.as_ref(), team)?,
         disturbances: file
             .disturbance
@@ -91,16 +103,19 @@ pub(super) fn validate(
             .enumerate()
             .map(|(index, disturbance)| {
                 let walks = file.reference.kind == ReferenceKind::Walk;
-                check.disturbance(index, disturbance, team, time, walks)
+                check.disturbance(index, disturbance, team, time, &agent, walks)
             })
             .collect::<Result<_, _>>()?,
+        strata,
+        sampling,
         faults: file
             .fault
             .iter()
+            .zip(fault_names)
             .enumerate()
-            .map(|(index, fault)| check.fault(index, fault, team, time, agent.actuation()))
+            .map(|(index, (fault, name))| check.fault(index, fault, name, team, time, &agent))
             .collect::<Result<_, _>>()?,
-        verdict: check.verdict(&file.verdict.unwrap_or_default())?,
+        verdict: check.verdict(file.verdict.as_ref().unwrap_or(&VerdictFile::default()))?,
         channels: check.channels,
         agent,
     })
@@ -205,6 +220,66 @@ impl Check<'_> {
         ))
     }
 
+    fn control(
+        &self,
+        file: &ControlFile,
+        team: usize,
+        time: Time,
+    ) -> Result<Control, CampaignError> {
+        let delay_s = match &file.delay_s {
+            None => None,
+            value => Some(self.of_agents(
+                "control.delay_s",
+                value.as_ref(),
+                None,
+                Per::Episode,
+                Bounds::Positive,
+                team,
+            )?),
+        };
+        if let Some(delay_s) = &delay_s {
+            self.remembered("control.delay_s", delay_s, time)?;
+        }
+        let hold_steps = match file.rate_hz {
+            None => 1.0,
+            Some(rate_hz) => {
+                let rate_hz = self.number("control.rate_hz", rate_hz, Bounds::Positive)?;
+                let exact = 1.0 / (rate_hz * time.step_s);
+                let steps = exact.round();
+                if steps < 1.0
+                    || steps > f64::from(time.steps)
+                    || (exact - steps).abs() > 1e-6 * exact
+                {
+                    return Err(self.invalid(
+                        "control.rate_hz",
+                        in_toml(rate_hz),
+                        &format!(
+                            "a command is held for whole steps of time.step_s = {}",
+                            in_toml(time.step_s)
+                        ),
+                        &format!(
+                            "use {} for {} steps, or another step",
+                            in_toml(1.0 / (steps.max(1.0) * time.step_s)),
+                            steps.max(1.0)
+                        ),
+                    ));
+                }
+                steps
+            }
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked to lie within the steps"
+        )]
+        let hold_steps = hold_steps as u32;
+        Ok(Control {
+            integral: file.integral.unwrap_or(IntegralKind::Exact),
+            delay_s,
+            hold_steps,
+        })
+    }
+
     fn initial(&self, file: Option<&InitialFile>, team: usize) -> Result<Initial, CampaignError> {
         let blocks = file.and_then(|file| file.agents.as_deref());
         self.blocks("initial.agents", blocks, team)?;
@@ -213,6 +288,7 @@ impl Check<'_> {
                 name,
                 default: Some(0.0),
                 bounds: Bounds::Any,
+                per: Per::Channel,
             };
             self.per_channel("initial", file, blocks, parameter, team)
         };
@@ -241,33 +317,5 @@ impl Check<'_> {
                 Bounds::Positive,
             )?,
         })
-    }
-
-    fn requirements(
-        &self,
-        files: &[RequireFile],
-        controllers: &[String],
-    ) -> Result<Vec<Requirement>, CampaignError> {
-        files
-            .iter()
-            .enumerate()
-            .map(|(index, file)| {
-                if !controllers.contains(&file.controller) {
-                    return Err(self.invalid(
-                        format!("require[{index}].controller"),
-                        format!("{:?}", file.controller),
-                        &format!("the campaign's controllers are {}", controllers.join(", ")),
-                        "name one of them, or add it to `controllers`",
-                    ));
-                }
-                let key = format!("require[{index}].failure_rate_upper_95");
-                let failure_rate_upper_95 =
-                    self.number(&key, file.failure_rate_upper_95, Bounds::Share)?;
-                Ok(Requirement {
-                    controller: file.controller.clone(),
-                    failure_rate_upper_95,
-                })
-            })
-            .collect()
     }
 }

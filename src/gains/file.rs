@@ -42,7 +42,7 @@ pub struct ControllerFile {
     /// Gains of a biped's joints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<ControllerGains>,
-    /// What was found about them, by channel group; not read.
+    /// What was found about them, by channel group; read back with a run, and found anew wherever gains are named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<serde_json::Value>,
 }
@@ -123,6 +123,7 @@ pub(super) fn controller(
             known.join(", ")
         )));
     };
+    let written = found.findings.take();
     let mut of_group = |(group, design): (ChannelGroup, &ChannelDesign)| {
         let role = group.role.name();
         let gains = found.of(group.role).take().ok_or_else(|| {
@@ -138,17 +139,19 @@ pub(super) fn controller(
             source: Box::new(source),
         };
         let loop_gains = integrable(design, &gains).map_err(refused)?;
-        let verified = if check {
-            Some(verify(design, &gains).map_err(refused)?)
+        let findings = if check {
+            let verified = verify(design, &gains).map_err(refused)?;
+            Some(Findings {
+                analysis: verified.analysis,
+                certificate: verified.certificate,
+                checks: verified.checks,
+                solver: Vec::new(),
+            })
         } else {
-            None
+            // A run that wrote them in another form is flown all the same.
+            let written = written.as_ref().and_then(|findings| findings.get(role));
+            written.and_then(|findings| Findings::deserialize(findings).ok())
         };
-        let findings = verified.map(|verified| Findings {
-            analysis: verified.analysis,
-            certificate: verified.certificate,
-            checks: verified.checks,
-            solver: Vec::new(),
-        });
         Ok::<_, GainsError>(ChannelController {
             gains,
             loop_gains,

@@ -1,13 +1,16 @@
 //! From draws to what acts on an agent: the numbers of the episode loop, in its precision and lanes.
 
+use super::dryden::{Dryden, at_rest};
+use super::fault::{FaultLanes, small};
 use super::lanes::{Lane, MAX_WIDTH};
+use super::memory::Ring;
+use super::noise::{Filter, Turbulence};
 use super::plant_uav::inertia;
-use super::signal::{Noise, Signals, Sine, Square, Switch};
-use crate::campaign::{
-    Agent, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE, Fault, FaultChannels, FaultKind,
-    FaultTarget,
-};
-use crate::draw::{AgentDraw, Episode, FaultDraw, member};
+use super::rng::{Address, Stream};
+use super::signal::{Signals, Wave};
+use super::switch::Switch;
+use crate::campaign::{Agent, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE};
+use crate::draw::{AgentDraw, Episode, member};
 use std::f64::consts::TAU;
 
 /// A block of episodes, one per lane; lanes without one repeat the last.
@@ -22,8 +25,6 @@ pub(crate) struct Condition<L: Lane, const NC: usize> {
     /// int e, e and e' at t = 0.
     pub(crate) initial: [[L; 3]; NC],
     pub(crate) signals: Signals<L, NC>,
-    /// 1 / true inertia.
-    pub(crate) inverse_inertia: [L; NC],
     pub(crate) kappa: L,
     /// The step of the first fault that does not begin with the run; infinite if there is none.
     pub(crate) first_fault: L,
@@ -53,11 +54,22 @@ impl Block<'_> {
     ) -> Condition<L, NC> {
         let campaign = self.campaign;
         let mut signals = Signals::none();
+        signals.hold_steps = campaign.control.hold_steps;
+        if campaign.control.delay_s.is_some() {
+            signals.command_rings.push(self.control_delay(agent));
+        }
         for (index, disturbance) in campaign.disturbances.iter().enumerate() {
             self.add_disturbance(&mut signals, disturbance, index, agent, first, entries);
         }
         for (index, fault) in campaign.faults.iter().enumerate() {
-            self.add_fault(&mut signals, fault, index, agent, first, entries);
+            let lanes = FaultLanes {
+                block: self,
+                fault,
+                index,
+                agent,
+                first,
+            };
+            lanes.add(&mut signals, entries);
         }
         // A biped's scale is that of M and H as a whole.
         let inertia = match &campaign.agent {
@@ -67,6 +79,16 @@ impl Block<'_> {
         let turns =
             |channel: usize| matches!(campaign.agent, Agent::Uav(_)) && channel >= FIRST_ATTITUDE;
         let channel = |pick: &dyn Fn(&AgentDraw) -> f64| -> L { self.load(agent, pick) };
+        signals.first_inverse_inertia = std::array::from_fn(|c| {
+            channel(&|draw| {
+                let scale = if turns(first + c) {
+                    draw.inertia_scale
+                } else {
+                    draw.mass_scale
+                };
+                1.0 / (inertia[first + c] * scale)
+            })
+        });
         Condition {
             initial: std::array::from_fn(|c| {
                 [
@@ -76,16 +98,6 @@ impl Block<'_> {
                 ]
             }),
             signals,
-            inverse_inertia: std::array::from_fn(|c| {
-                channel(&|draw| {
-                    let scale = if turns(first + c) {
-                        draw.inertia_scale
-                    } else {
-                        draw.mass_scale
-                    };
-                    1.0 / (inertia[first + c] * scale)
-                })
-            }),
             kappa: channel(&|draw| draw.kappa),
             first_fault: channel(&|draw| {
                 later_onsets(campaign, draw)
@@ -96,12 +108,16 @@ impl Block<'_> {
         }
     }
 
-    fn episode(&self, lane: usize) -> &Episode {
+    pub(super) fn episode(&self, lane: usize) -> &Episode {
         &self.episodes[lane.min(self.episodes.len() - 1)]
     }
 
     /// A number of each lane's draw; what lies beyond the lanes of `L` is not used.
-    fn lanes<L: Lane>(&self, agent: usize, pick: impl Fn(&AgentDraw) -> f64) -> [f64; MAX_WIDTH] {
+    pub(super) fn lanes<L: Lane>(
+        &self,
+        agent: usize,
+        pick: impl Fn(&AgentDraw) -> f64,
+    ) -> [f64; MAX_WIDTH] {
         std::array::from_fn(|lane| {
             if lane < L::WIDTH {
                 pick(&self.episode(lane).agents[agent])
@@ -127,6 +143,10 @@ impl Block<'_> {
         let values = |parameter: usize, c: usize| {
             self.lanes::<L>(agent, |draw| draw.disturbances[index][parameter][first + c])
         };
+        let acts = |force: &dyn Fn(usize) -> [f64; MAX_WIDTH]| {
+            let acting = || (0..NC).any(|c| force(c).iter().any(|force| *force != 0.0));
+            entries == Entries::Possible || acting()
+        };
         match disturbance.kind {
             DisturbanceKind::Constant => {
                 for (c, constant) in signals.constant.iter_mut().enumerate() {
@@ -138,95 +158,166 @@ impl Block<'_> {
                     *ground = *ground + L::load(&values(0, c));
                 }
             }
-            DisturbanceKind::Sine => {
-                let acts =
-                    || (0..NC).any(|c| values(0, c).iter().any(|amplitude| *amplitude != 0.0));
-                if entries == Entries::Possible || acts() {
-                    signals.sines.push(std::array::from_fn(|c| Sine {
-                        amplitude: L::load(&values(0, c)),
-                        phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
-                        advance: self.advance::<L>(
-                            values(1, c).map(|frequency_rad_s| frequency_rad_s / TAU),
-                        ),
-                    }));
-                }
-            }
-        }
-    }
-
-    fn add_fault<L: Lane, const NC: usize>(
-        &self,
-        signals: &mut Signals<L, NC>,
-        fault: &Fault,
-        index: usize,
-        agent: usize,
-        first: usize,
-        entries: Entries,
-    ) {
-        let campaign = self.campaign;
-        let lanes = |pick: &dyn Fn(&FaultDraw) -> f64| {
-            self.lanes::<L>(agent, |draw| pick(&draw.faults[index]))
-        };
-        let strikes = |c: usize| lanes(&|draw| f64::from(u8::from(draw.strikes[first + c])));
-        let listed = match entries {
-            Entries::Possible => may_strike(fault, first, NC),
-            Entries::Acting => (0..NC).any(|c| strikes(c).contains(&1.0)),
-        };
-        if !listed {
-            return;
-        }
-        let values =
-            |parameter: usize, c: usize| lanes(&|draw| draw.parameters[parameter][first + c]);
-        let switch = |c: usize| Switch {
-            onset: L::load(&lanes(&|draw| {
-                if draw.strikes[first + c] {
-                    f64::from(campaign.time.onset_step(draw.onset_s))
-                } else {
-                    f64::INFINITY
-                }
-            })),
-            value: L::load(&values(0, c)),
-        };
-        match (fault.kind, fault.target) {
-            (FaultKind::LossOfEffectiveness, _) => signals.losses.push(std::array::from_fn(switch)),
-            (FaultKind::Bias, FaultTarget::Actuator) => {
-                signals.command_biases.push(std::array::from_fn(switch));
-            }
-            (FaultKind::Bias, FaultTarget::Sensor) => {
-                signals.sensor_biases.push(std::array::from_fn(switch));
-            }
-            (FaultKind::SmoothedSquare, _) => {
-                signals.squares.push(std::array::from_fn(|c| Square {
-                    switch: switch(c),
-                    inverse_smoothing: L::load(&values(2, c).map(f64::recip)),
-                    phase: L::turns(&values(3, c).map(|phase_rad| phase_rad / TAU)),
-                    advance: self.advance::<L>(values(1, c).map(f64::recip)),
+            DisturbanceKind::Sine if acts(&|c| values(0, c)) => {
+                signals.sines.push(std::array::from_fn(|c| Wave {
+                    switch: Switch::always(L::load(&values(0, c))),
+                    inverse_smoothing: L::number(0.0),
+                    phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
+                    advance: self
+                        .advance::<L>(values(1, c).map(|frequency_rad_s| frequency_rad_s / TAU)),
                     held: L::number(0.0),
                 }));
             }
-            (FaultKind::Noise, _) => signals.noises.push(Noise {
-                entry: u32::try_from(index).unwrap_or(u32::MAX),
-                members: std::array::from_fn(|c| member(agent, first + c)),
-                switch: std::array::from_fn(switch),
-                samples: [[L::number(0.0); 4]; NC],
-            }),
+            DisturbanceKind::Gust1Cosine => {
+                let blows = |c: usize| disturbance.kind.acts_on(first + c);
+                let force = |c: usize| {
+                    let (speed_m_s, gain_n_s_m) = (values(0, c), values(1, c));
+                    std::array::from_fn(|lane| {
+                        if blows(c) {
+                            speed_m_s[lane] * gain_n_s_m[lane]
+                        } else {
+                            0.0
+                        }
+                    })
+                };
+                if acts(&force) {
+                    let waves =
+                        std::array::from_fn(|c| self.gust(force(c), values(2, c), values(3, c)));
+                    signals.gusts.push(waves);
+                }
+            }
+            DisturbanceKind::Dryden => {
+                let blows = |c: usize| disturbance.kind.acts_on(first + c);
+                if (0..NC).any(blows) {
+                    signals
+                        .turbulences
+                        .push(self.turbulence(agent, index, first));
+                }
+            }
+            DisturbanceKind::Sine => {}
         }
     }
 
+    /// One turn of 1 - cos from an onset on.
+    fn gust<L: Lane>(
+        &self,
+        force_n: [f64; MAX_WIDTH],
+        onset_s: [f64; MAX_WIDTH],
+        duration_s: [f64; MAX_WIDTH],
+    ) -> Wave<L> {
+        let time = self.campaign.time;
+        let onsets = onset_s.map(|onset_s| f64::from(time.onset_step(onset_s)));
+        let steps = duration_s.map(|duration_s| time.whole_steps(duration_s));
+        // A quarter turn back, the sine is at its bottom.
+        let phases: [f64; MAX_WIDTH] =
+            std::array::from_fn(|lane| -onsets[lane] / steps[lane] - 0.25);
+        let ends: [f64; MAX_WIDTH] = std::array::from_fn(|lane| onsets[lane] + steps[lane]);
+        Wave {
+            switch: Switch {
+                onset: L::load(&onsets),
+                end: L::load(&ends),
+                inverse_ramp: L::number(1.0),
+                value: L::load(&force_n),
+            },
+            inverse_smoothing: L::number(0.0),
+            phase: L::turns(&phases),
+            advance: L::turns(&steps.map(|steps| 0.5 / steps)),
+            held: L::number(0.0),
+        }
+    }
+
+    /// Turbulence along the axes of translation; nothing about the others.
+    fn turbulence<L: Lane, const NC: usize>(
+        &self,
+        agent: usize,
+        index: usize,
+        first: usize,
+    ) -> Turbulence<L, NC> {
+        let campaign = self.campaign;
+        let entry = u32::try_from(index).unwrap_or(u32::MAX);
+        let members = std::array::from_fn(|c| member(agent, first + c));
+        let filter = |c: usize, draw: &AgentDraw| {
+            let of = |parameter: usize| draw.disturbances[index][parameter][first + c];
+            if first + c < FIRST_ATTITUDE {
+                let wind = Dryden {
+                    wind_m_s: of(0),
+                    altitude_m: of(1),
+                    airspeed_m_s: of(2),
+                };
+                wind.filter(first + c, of(3), campaign.time.step_s)
+            } else {
+                Filter::still()
+            }
+        };
+        let at_start: [[[f64; MAX_WIDTH]; 2]; NC] = std::array::from_fn(|c| {
+            let mut state = [[0.0; MAX_WIDTH]; 2];
+            for lane in 0..L::WIDTH {
+                let address = Address {
+                    episode: self.episode(lane).index,
+                    stream: Stream::Turbulence,
+                    entry,
+                    member: members[c],
+                    index: u32::MAX,
+                };
+                for (state, own) in state.iter_mut().zip(at_rest(address, campaign.seed)) {
+                    state[lane] = own;
+                }
+            }
+            state
+        });
+        Turbulence {
+            entry,
+            members,
+            filter: std::array::from_fn(|c| {
+                let number = |pick: &dyn Fn(Filter<f64>) -> f64| {
+                    self.load(agent, |draw| pick(filter(c, draw)))
+                };
+                Filter {
+                    keep: number(&|filter| filter.keep),
+                    cross: number(&|filter| filter.cross),
+                    noise: std::array::from_fn(|k| number(&|filter| filter.noise[k])),
+                    output: std::array::from_fn(|k| number(&|filter| filter.output[k])),
+                }
+            }),
+            state: at_start.map(|state| state.map(|values| L::load(&values))),
+        }
+    }
+
+    /// The delay of a control loop, which is there from the start to the end.
+    fn control_delay<L: Lane, const NC: usize>(&self, agent: usize) -> Ring<L, NC, 1> {
+        let steps = |draw: &AgentDraw| self.campaign.time.whole_steps(draw.control_delay_s);
+        let lengths = self.lanes::<L>(agent, steps).map(small);
+        Ring::new(true, [Switch::always(L::number(1.0)); NC], [lengths; NC])
+    }
+
     /// Turns per half step of frequencies in Hz.
-    fn advance<L: Lane>(&self, frequency_hz: [f64; MAX_WIDTH]) -> L::Turns {
+    pub(super) fn advance<L: Lane>(&self, frequency_hz: [f64; MAX_WIDTH]) -> L::Turns {
         L::turns(&frequency_hz.map(|frequency| frequency * self.campaign.time.step_s / 2.0))
     }
 }
 
-/// Whether a fault strikes one of the `count` channels from `first` on in some episode.
-fn may_strike(fault: &Fault, first: usize, count: usize) -> bool {
-    match &fault.channels {
-        FaultChannels::One => true,
-        FaultChannels::These(channels) => channels
-            .iter()
-            .any(|channel| (first..first + count).contains(channel)),
-    }
+/// The steps at which what an agent meets begins or ends.
+#[must_use]
+pub(crate) fn changes(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
+    let time = campaign.time;
+    let faults = draw.faults.iter().filter(|fault| fault.occurs());
+    let ends = faults
+        .filter(|fault| fault.duration_s.is_finite())
+        .map(|fault| fault.end_step(time));
+    let gusts = campaign.disturbances.iter().zip(&draw.disturbances);
+    let gusts = gusts.filter(|(gust, _)| gust.kind == DisturbanceKind::Gust1Cosine);
+    let gusts = gusts.flat_map(|(_, values)| {
+        let spans = values[2].iter().zip(&values[3]);
+        spans.flat_map(move |(&onset_s, &duration_s)| {
+            let onset = time.onset_step(onset_s);
+            [
+                onset,
+                onset.saturating_add(small(time.whole_steps(duration_s))),
+            ]
+        })
+    });
+    let begins = later_onsets(campaign, draw);
+    begins.into_iter().chain(ends).chain(gusts).collect()
 }
 
 /// The steps at which an agent's faults begin, apart from those that begin with the run.

@@ -67,6 +67,16 @@ impl<R: Real> ChannelGains<R> {
     }
 }
 
+/// What becomes of the outputs before the observer sees them.
+pub(crate) struct Measured<L> {
+    /// f2, which enters through B20.
+    pub(crate) sensor_fault: L,
+    /// By how much x and x' are measured too large beside it.
+    pub(crate) off: [L; 2],
+    /// Whether the first output is the integral of what is measured, and not that of e.
+    pub(crate) integral: bool,
+}
+
 /// The estimates of int e, e and e'.
 #[inline(always)]
 pub(crate) fn error_estimate<L: Lane, const NS: usize>(state: &[L; NS]) -> [L; 3] {
@@ -101,12 +111,13 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     gains: &ChannelGains<L::Real>,
     channel: &mut Stepped<L, NS>,
     error_acceleration: L,
-    sensor_fault: L,
+    measured: &Measured<L>,
     told: L,
     h: &Step<L::Real>,
 ) {
     if NS == TRUE_STATES {
         let state = *channel.at::<STAGE>();
+        channel.take::<STAGE>(0, state[1], h);
         return step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
     }
     let [b1, b2] = [
@@ -120,16 +131,23 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     ];
     let state = *channel.at::<STAGE>();
     let unexplained = if NS == FTC_STATES {
-        sensor_fault - state[OBSERVER + 5]
+        measured.sensor_fault - state[OBSERVER + 5]
     } else {
-        sensor_fault
+        measured.sensor_fault
     };
+    let [error, rate] = [state[1] + measured.off[0], state[2] + measured.off[1]];
     // y - yhat of (20); C0 r cancels.
     let innovation = [
         state[0] - state[OBSERVER],
-        unexplained.mul_add(b1, state[1] - state[OBSERVER + 1]),
-        unexplained.mul_add(b2, state[2] - state[OBSERVER + 2]),
+        unexplained.mul_add(b1, error - state[OBSERVER + 1]),
+        unexplained.mul_add(b2, rate - state[OBSERVER + 2]),
     ];
+    let integrand = if measured.integral {
+        measured.sensor_fault.mul_add(b1, error)
+    } else {
+        state[1]
+    };
+    channel.take::<STAGE>(0, integrand, h);
     step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
     let rows = &gains.injection;
     let mut row = injected(&rows[0], &innovation, state[OBSERVER + 1]);
@@ -155,7 +173,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     }
 }
 
-/// The rows e, e' and e''.
+/// The rows e and e'.
 #[inline(always)]
 fn step_error<L: Lane, const NS: usize, const STAGE: usize>(
     channel: &mut Stepped<L, NS>,
@@ -163,7 +181,6 @@ fn step_error<L: Lane, const NS: usize, const STAGE: usize>(
     error_acceleration: L,
     h: &Step<L::Real>,
 ) {
-    channel.take::<STAGE>(0, state[1], h);
     channel.take::<STAGE>(1, state[2], h);
     channel.take::<STAGE>(2, error_acceleration, h);
 }

@@ -5,9 +5,10 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::condition::{Block, Condition, Entries, later_onsets};
+use super::agent::{Agent, Coupling, Setting};
+use super::condition::{Block, Condition, Entries, changes};
 use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES, TRUE_STATES};
-use super::group::{Advance, Agent, Ending, Group, Setting, Show, Shown};
+use super::group::{Advance, Ending, Group, Internals, Show, Shown};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::part::parts;
@@ -15,7 +16,7 @@ pub(crate) use super::part::{Part, PlantKind};
 use super::plant::Plant;
 use super::plant_biped::Leg;
 use super::plant_uav::{Attitude, Axis, Thrust};
-use crate::campaign::{self, Campaign, ObserverStart};
+use crate::campaign::{self, Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
 use crate::robot::LEG_JOINTS;
 use crate::synthesis::LoopGains;
@@ -62,6 +63,8 @@ pub struct Snapshot {
     pub step: u32,
     /// `[agent][channel]`.
     pub agents: Vec<Vec<Shown>>,
+    /// What the loops hold, `[agent][channel]`; empty where a GPU flew, which does not send it back.
+    pub internals: Vec<Vec<Internals>>,
 }
 
 impl AgentOutcome {
@@ -232,14 +235,15 @@ impl<R: Real> Flight<'_, R> {
                     verdict.settled_error[first + c],
                 )
             }),
-            coupled: campaign.is_coupled(),
+            coupling: Coupling::of(campaign),
+            measured_integral: campaign.control.integral == IntegralKind::Sensor,
             step_s: campaign.time.step_s,
             settle_step: campaign.time.settle_step,
             seed: campaign.seed,
             table: &part.table,
         };
         let agents = (0..campaign.team)
-            .map(|agent| self.agent::<L, NC, NS, NX>(&setting.gains, agent, first))
+            .map(|agent| self.agent(&setting, agent, first))
             .collect();
         let numbers = self.block.numbers();
         let changes = (0..campaign.team)
@@ -247,7 +251,7 @@ impl<R: Real> Flight<'_, R> {
                 self.block
                     .episodes
                     .iter()
-                    .flat_map(move |episode| later_onsets(campaign, &episode.agents[agent]))
+                    .flat_map(move |episode| changes(campaign, &episode.agents[agent]))
             })
             .collect();
         let mut group: Group<L, NC, NS, NX> = Group::new(agents, numbers, changes);
@@ -278,28 +282,37 @@ impl<R: Real> Flight<'_, R> {
     }
 
     /// The initial state of an agent and what will act on it.
-    fn agent<L: Lane<Real = R>, const NC: usize, const NS: usize, const NX: usize>(
+    fn agent<L, P, const NC: usize, const NS: usize, const NX: usize>(
         &self,
-        gains: &[ChannelGains<R>; NC],
+        setting: &Setting<'_, P, R, NC>,
         agent: usize,
         first: usize,
-    ) -> Agent<L, NC, NS, NX> {
+    ) -> Agent<L, NC, NS, NX>
+    where
+        L: Lane<Real = R>,
+        P: Plant<L, NC, NX>,
+    {
         let campaign = &self.model.campaign;
         let condition: Condition<L, NC> = self.block.condition(agent, first, Entries::Acting);
-        let first_sensor_fault = condition
-            .signals
-            .clone()
-            .at_start(campaign.seed, &self.block.numbers());
+        let at_rest = [L::number(0.0); NX];
+        let rows = &setting.table[agent * NC * P::ROWS..][..NC * P::ROWS];
+        let reference = setting.plant.reference(rows, &at_rest);
+        let (sensor_fault, off) = condition.signals.clone().at_start(
+            reference,
+            &condition.initial,
+            campaign.seed,
+            &self.block.numbers(),
+        );
         let channels = std::array::from_fn(|c| {
             let [integral, error, rate] = condition.initial[c];
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
             if NS > OBSERVER && campaign.initial.observer == ObserverStart::Measured {
-                state[OBSERVER..OBSERVER + 3].copy_from_slice(&gains[c].measured(
+                state[OBSERVER..OBSERVER + 3].copy_from_slice(&setting.gains[c].measured(
                     integral,
-                    error,
-                    rate,
-                    first_sensor_fault[c],
+                    error + off[c][0],
+                    rate + off[c][1],
+                    sensor_fault[c],
                 ));
             }
             state
@@ -312,15 +325,22 @@ impl<R: Real> Flight<'_, R> {
         snapshot: usize,
         step: u32,
         first: usize,
-        shown: &[[Shown; NC]],
+        shown: &[[(Shown, Internals); NC]],
     ) {
         if snapshot == self.snapshots.len() {
-            let agents =
-                vec![vec![Shown::default(); self.model.campaign.channels().len()]; shown.len()];
-            self.snapshots.push(Snapshot { step, agents });
+            let channels = self.model.campaign.channels().len();
+            self.snapshots.push(Snapshot {
+                step,
+                agents: vec![vec![Shown::default(); channels]; shown.len()],
+                internals: vec![vec![Internals::default(); channels]; shown.len()],
+            });
         }
-        for (agent, shown) in self.snapshots[snapshot].agents.iter_mut().zip(shown) {
-            agent[first..first + NC].copy_from_slice(shown);
+        let snapshot = &mut self.snapshots[snapshot];
+        let agents = snapshot.agents.iter_mut().zip(&mut snapshot.internals);
+        for ((agent, internals), shown) in agents.zip(shown) {
+            for (c, &(seen, held)) in (first..).zip(shown) {
+                (agent[c], internals[c]) = (seen, held);
+            }
         }
     }
 

@@ -8,13 +8,15 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::condition::Condition;
-use super::controller::{ChannelGains, error_estimate, fault_estimates, feedback, step_channel};
-use super::integrator::{Step, Stepped};
+use super::agent::{Agent, Coupling, Setting};
+use super::controller::{Measured, OBSERVER, error_estimate, fault_estimates, step_channel};
+use super::integrator::Step;
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
-use super::metric::{ChannelOutcome, Limits, Metrics, Sample};
-use super::plant::{Inputs, Plant, ReferenceRow, Response};
-use super::signal::Signals;
+use super::memory::Moment;
+use super::metric::ChannelOutcome;
+use super::plant::{Plant, ReferenceRow};
+use super::signal::{Signals, kernel};
+use crate::synthesis::LOOP_STATES;
 
 /// Steps between two flushes of the metrics, counted from step 0.
 pub(crate) const FLUSH_STEPS: u32 = 256;
@@ -30,32 +32,6 @@ pub(crate) struct Ending {
     pub(crate) finite: bool,
 }
 
-/// Constants of a group: plant, gains and limits of its channels.
-pub(crate) struct Setting<'t, P, R, const NC: usize> {
-    pub(crate) plant: P,
-    pub(crate) gains: [ChannelGains<R>; NC],
-    pub(crate) limits: [Limits<R>; NC],
-    pub(crate) coupled: bool,
-    pub(crate) step_s: f64,
-    pub(crate) settle_step: u32,
-    pub(crate) seed: u64,
-    /// Reference at every half step, `[half step][agent][channel][row]`.
-    pub(crate) table: &'t [ReferenceRow<R>],
-}
-
-/// One agent's channels of the group.
-pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) channels: [Stepped<L, NS>; NC],
-    pub(crate) extra: Stepped<L, NX>,
-    pub(crate) signals: Signals<L, NC>,
-    pub(crate) inverse_inertia: [L; NC],
-    pub(crate) kappa: L,
-    pub(crate) first_fault: L,
-    pub(crate) metrics: [Metrics<L>; NC],
-    /// The first step that failed; infinite if none did.
-    pub(crate) failed: L,
-}
-
 /// The state of a group between two steps.
 pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) agents: Vec<Agent<L, NC, NS, NX>>,
@@ -63,7 +39,10 @@ pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usi
     /// Steps at which a fault switches, ascending.
     pub(crate) changes: Vec<u32>,
     pub(crate) next_change: usize,
-    noisy: bool,
+    /// Whether what is held differs from step to step.
+    restless: bool,
+    /// Whether anything of a step matters to the next.
+    remembers: bool,
     pub(crate) step: u32,
 }
 
@@ -84,114 +63,23 @@ pub struct Shown {
     pub f1: f64,
     /// Its estimate.
     pub f1_hat: f64,
-    /// Sensor fault signal, (16).
+    /// Sensor fault signal, (16), and what else the rate is measured too large by.
     pub f2: f64,
     /// Its estimate.
     pub f2_hat: f64,
-    /// Command after faults: u of (9), and torques after their limits; under thrust, x, y and z are the force demanded.
+    /// The command that acts: u of (9) after limits and faults; under thrust, x, y and z are the force demanded.
     pub u: f64,
 }
 
-impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS, NX> {
-    /// An agent at step 0, from its channels' states and what it meets.
-    pub(crate) fn new(channels: [[L; NS]; NC], condition: Condition<L, NC>) -> Self {
-        Self {
-            channels: channels.map(Stepped::new),
-            extra: Stepped::new([L::number(0.0); NX]),
-            signals: condition.signals,
-            inverse_inertia: condition.inverse_inertia,
-            kappa: condition.kappa,
-            first_fault: condition.first_fault,
-            metrics: [Metrics::new(); NC],
-            failed: L::number(f64::INFINITY),
-        }
-    }
-
-    /// x and x' of the channels at the state of stage `STAGE`.
-    #[inline(always)]
-    pub(crate) fn motion<P: Plant<L, NC, NX>, const STAGE: usize>(
-        &self,
-        plant: &P,
-        rows: &[ReferenceRow<L::Real>],
-    ) -> [[L; NC]; 2] {
-        let [mut position, mut velocity] = plant.reference(rows, self.extra.at::<STAGE>());
-        for c in 0..NC {
-            let state = self.channels[c].at::<STAGE>();
-            position[c] = position[c] + state[1];
-            velocity[c] = velocity[c] + state[2];
-        }
-        [position, velocity]
-    }
-
-    /// The answer of the plant at the state of stage `STAGE`; `team` is the sum of x over the team.
-    #[inline(always)]
-    pub(crate) fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
-        &self,
-        setting: &Setting<'_, P, L::Real, NC>,
-        rows: &[ReferenceRow<L::Real>],
-        team: &[L; NC],
-    ) -> Response<L, NC, NX> {
-        let [position, velocity] = self.motion::<P, STAGE>(&setting.plant, rows);
-        let mut wanted = [L::number(0.0); NC];
-        let mut force = self.signals.disturbance;
-        for c in 0..NC {
-            wanted[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
-        }
-        if setting.coupled {
-            for c in 0..NC {
-                // (10): c = kappa x o sum of the other agents' x.
-                let others = team[c] - position[c];
-                force[c] = (others * self.kappa).mul_add(position[c], force[c]);
-            }
-        }
-        let inputs = Inputs {
-            reference: rows,
-            feedback: wanted,
-            position,
-            velocity,
-            force,
-            ground: &self.signals.ground,
-            command_gain: &self.signals.command_gain,
-            command_bias: &self.signals.command_bias,
-            inverse_inertia: &self.inverse_inertia,
-        };
-        setting.plant.respond(&inputs, self.extra.at::<STAGE>())
-    }
-
-    #[inline(always)]
-    pub(crate) fn observe<P: Plant<L, NC, NX>, const SETTLED: bool>(
-        &mut self,
-        limits: &[Limits<L::Real>; NC],
-        response: &Response<L, NC, NX>,
-        now: L,
-    ) {
-        let never = L::number(f64::INFINITY);
-        for c in 0..NC {
-            let state = self.channels[c].at::<0>();
-            let [f1_hat, f2_hat] = fault_estimates(state);
-            let f1 = response.error_acceleration[c] - response.told[c];
-            let sample = Sample {
-                error: state[1],
-                command: response.command[c],
-                excess: response.excess[c],
-                actuator_fault_error: f1_hat - f1,
-                sensor_fault_error: f2_hat - self.signals.sensor_fault[c],
-            };
-            let limit = if SETTLED {
-                L::splat(limits[c].max_error)
-            } else {
-                L::splat(<L::Real as super::lanes::Real>::MAX)
-            };
-            self.failed = self
-                .failed
-                .min(L::select_le(sample.error.abs(), limit, never, now));
-            if P::LIMITED {
-                self.metrics[c].take::<SETTLED, true>(&sample, limits[c].settled_error, now);
-            } else {
-                self.metrics[c].take::<SETTLED, false>(&sample, limits[c].settled_error, now);
-            }
-        }
-    }
+/// What the loop of one channel holds at one instant beside what it shows, `[lane]`: what inequality (24) weighs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Internals {
+    /// int e.
+    pub integral: f64,
+    /// The observer's states `[int e, e, e', F1 (2), F2 (2)]`, zero beyond those that it has.
+    pub observer: [f64; LOOP_STATES],
+    /// The feedback that the observer is told was commanded.
+    pub told: f64,
 }
 
 impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS, NX> {
@@ -204,13 +92,15 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         changes.push(0);
         changes.sort_unstable();
         changes.dedup();
-        let noisy = agents.iter().any(|agent| !agent.signals.noises.is_empty());
+        let any = |is: fn(&Signals<L, NC>) -> bool| agents.iter().any(|agent| is(&agent.signals));
+        let (restless, remembers) = (any(Signals::is_restless), any(Signals::remembers));
         Self {
             agents,
             episodes,
             changes,
             next_change: 0,
-            noisy,
+            restless,
+            remembers,
             step: 0,
         }
     }
@@ -222,7 +112,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         if change {
             self.next_change += 1;
         }
-        if change || self.noisy {
+        if change || self.restless {
             self.hold(seed);
         }
     }
@@ -230,13 +120,28 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn hold(&mut self, seed: u64) {
         let now = L::number(f64::from(self.step));
+        let team = self.team_commands();
         for agent in &mut self.agents {
-            agent.signals.hold(self.step, seed, &self.episodes);
-            agent.signals.evaluate::<false>();
+            kernel::hold(&mut agent.signals, self.step, &team, seed, &self.episodes);
             for metrics in &mut agent.metrics {
                 metrics.before_fault(agent.first_fault, now);
             }
         }
+    }
+
+    /// The sum of the team's last commands, of which some may leak into others.
+    #[inline(always)]
+    pub(crate) fn team_commands(&self) -> [L; NC] {
+        let mut sum = [L::number(0.0); NC];
+        if self.remembers {
+            for agent in &self.agents {
+                for c in 0..NC {
+                    sum[c] = sum[c] + agent.signals.last_command[c];
+                }
+            }
+            finite(&mut sum);
+        }
+        sum
     }
 
     /// The sum of x over the team, which the coupling needs.
@@ -247,18 +152,14 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         rows: &[ReferenceRow<L::Real>],
     ) -> [L; NC] {
         let mut sum = [L::number(0.0); NC];
-        if setting.coupled {
+        if setting.coupling != Coupling::None {
             for (agent, rows) in self.agents.iter().zip(rows.chunks_exact(NC * P::ROWS)) {
                 let [position, _] = agent.motion::<P, STAGE>(&setting.plant, rows);
                 for c in 0..NC {
                     sum[c] = sum[c] + position[c];
                 }
             }
-            // Finite, so that an agent that diverged leaves those alone to whom it is coupled with kappa = 0.
-            let (low, high) = (L::number(-FAR_AWAY), L::number(FAR_AWAY));
-            for c in 0..NC {
-                sum[c] = sum[c].min(high).max(low);
-            }
+            finite(&mut sum);
         }
         sum
     }
@@ -271,18 +172,26 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         h: &Step<L::Real>,
     ) {
         let team = self.team_sum::<P, STAGE>(setting, rows);
-        let now = L::number(f64::from(self.step));
+        let (size, step, remembers) = (self.agents.len(), self.step, self.remembers);
         for (agent, rows) in self.agents.iter_mut().zip(rows.chunks_exact(NC * P::ROWS)) {
-            let response = agent.respond::<P, STAGE>(setting, rows, &team);
+            let response = agent.respond::<P, STAGE>(setting, rows, &team, size, step);
+            let off = agent.distortion::<P, STAGE>(&setting.plant, rows);
             if STAGE == 0 {
-                agent.observe::<P, SETTLED>(&setting.limits, &response, now);
+                agent.observe::<P, SETTLED>(&setting.limits, &response, &off, step);
+                if remembers {
+                    agent.remember(setting, rows, &response, step);
+                }
             }
             for c in 0..NC {
                 step_channel::<L, NS, STAGE>(
                     &setting.gains[c],
                     &mut agent.channels[c],
                     response.error_acceleration[c],
-                    agent.signals.sensor_fault[c],
+                    &Measured {
+                        sensor_fault: agent.signals.sensor_fault[c],
+                        off: off[c],
+                        integral: setting.measured_integral,
+                    },
                     response.told[c],
                     h,
                 );
@@ -294,9 +203,17 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     }
 
     #[inline(always)]
-    fn evaluate_ahead(&mut self) {
+    fn evaluate(&mut self, moment: Moment) {
         for agent in &mut self.agents {
-            agent.signals.evaluate::<true>();
+            kernel::evaluate(&mut agent.signals, moment);
+        }
+    }
+
+    /// Ends a step for what follows a law of its own.
+    #[inline(always)]
+    pub(crate) fn end_step(&mut self, seed: u64) {
+        for agent in &mut self.agents {
+            kernel::end_step(&mut agent.signals, self.step, seed, &self.episodes);
         }
     }
 
@@ -320,11 +237,12 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
             } else {
                 self.stage::<P, 0, false>(setting, start, &h);
             }
-            self.evaluate_ahead();
+            self.evaluate(Moment::Middle);
             self.stage::<P, 1, false>(setting, middle, &h);
             self.stage::<P, 2, false>(setting, middle, &h);
-            self.evaluate_ahead();
+            self.evaluate(Moment::End);
             self.stage::<P, 3, false>(setting, end, &h);
+            self.end_step(setting.seed);
             self.step += 1;
             if self.step.is_multiple_of(FLUSH_STEPS) {
                 self.flush();
@@ -341,32 +259,35 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         }
     }
 
-    /// What the first lane shows at the current step, `[agent][channel]`.
+    /// What the first lane shows and holds at the current step, `[agent][channel]`.
     #[inline(always)]
     pub(crate) fn show<P: Plant<L, NC, NX>>(
         &mut self,
         setting: &Setting<'_, P, L::Real, NC>,
-    ) -> Vec<[Shown; NC]> {
+    ) -> Vec<[(Shown, Internals); NC]> {
         // Repeating this is harmless: what is held depends on the step alone.
         self.hold(setting.seed);
         let stride = self.agents.len() * NC * P::ROWS;
         let first = 2 * self.step as usize * stride;
         let rows = &setting.table[first..first + stride];
         let team = self.team_sum::<P, 0>(setting, rows);
-        let mut shown = vec![[Shown::default(); NC]; self.agents.len()];
+        let size = self.agents.len();
+        let blank = (Shown::default(), Internals::default());
+        let mut shown = vec![[blank; NC]; size];
         for ((agent, rows), shown) in self
             .agents
             .iter()
             .zip(rows.chunks_exact(NC * P::ROWS))
             .zip(&mut shown)
         {
-            let response = agent.respond::<P, 0>(setting, rows, &team);
+            let response = agent.respond::<P, 0>(setting, rows, &team, size, self.step);
+            let off = agent.distortion::<P, 0>(&setting.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&setting.plant, rows);
             for c in 0..NC {
                 let state = agent.channels[c].at::<0>();
                 let [f1_hat, f2_hat] = fault_estimates(state);
                 let f1 = response.error_acceleration[c] - response.told[c];
-                shown[c] = Shown {
+                let seen = Shown {
                     r: first_lane(position[c] - state[1]),
                     x: first_lane(position[c]),
                     e: first_lane(state[1]),
@@ -374,10 +295,19 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                     e_hat: first_lane(error_estimate(state)[1]),
                     f1: first_lane(f1),
                     f1_hat: first_lane(f1_hat),
-                    f2: first_lane(agent.signals.sensor_fault[c]),
+                    f2: first_lane(agent.signals.sensor_fault[c] + off[c][1]),
                     f2_hat: first_lane(f2_hat),
                     u: first_lane(response.command[c]),
                 };
+                let mut held = Internals {
+                    integral: first_lane(state[0]),
+                    observer: [0.0; LOOP_STATES],
+                    told: first_lane(response.told[c]),
+                };
+                for (held, &state) in held.observer.iter_mut().zip(state.iter().skip(OBSERVER)) {
+                    *held = first_lane(state);
+                }
+                shown[c] = (seen, held);
             }
         }
         shown
@@ -417,6 +347,15 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                 (endings, outcomes)
             })
             .collect()
+    }
+}
+
+/// Makes sums over a team finite, so that an agent that diverged leaves those alone on whom it acts with a strength of zero.
+#[inline(always)]
+pub(crate) fn finite<L: Lane, const NC: usize>(sums: &mut [L; NC]) {
+    let (low, high) = (L::number(-FAR_AWAY), L::number(FAR_AWAY));
+    for sum in sums {
+        *sum = sum.min(high).max(low);
     }
 }
 
@@ -461,7 +400,7 @@ pub(crate) struct Show<'a, P, L: Lane, const NC: usize, const NS: usize, const N
 impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: usize> Kernel
     for Show<'_, P, L, NC, NS, NX>
 {
-    type Output = Vec<[Shown; NC]>;
+    type Output = Vec<[(Shown, Internals); NC]>;
     #[inline(always)]
     fn run(self) -> Self::Output {
         self.group.show(self.setting)

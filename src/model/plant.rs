@@ -2,6 +2,7 @@
 //! and whatever acts on it.
 
 use super::lanes::Lane;
+use super::memory::Actuator;
 
 /// Four numbers of a reference table. A channel's first row at an instant is r, r', r'' and the feedforward
 /// M(r) r'' + H(r, r') of (9); what more a plant needs follows.
@@ -21,10 +22,8 @@ pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
     pub(crate) force: [L; NC],
     /// Scale of the ground's reaction, where the table has one.
     pub(crate) ground: &'a [L; NC],
-    /// What an actuator fault leaves of the command.
-    pub(crate) command_gain: &'a [L; NC],
-    /// What an actuator fault adds to the command.
-    pub(crate) command_bias: &'a [L; NC],
+    /// What becomes of the commands on their way.
+    pub(crate) actuator: &'a Actuator<L, NC>,
     /// 1 / true inertia.
     pub(crate) inverse_inertia: &'a [L; NC],
 }
@@ -35,7 +34,9 @@ pub(crate) struct Response<L, const NC: usize, const NX: usize> {
     pub(crate) error_acceleration: [L; NC],
     /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
     pub(crate) told: [L; NC],
-    /// The command u of (9) after limits and faults.
+    /// The command u of (9) after limits, as it sets out.
+    pub(crate) wanted: [L; NC],
+    /// The command that acts, after faults; under thrust, x, y and z show the force demanded.
     pub(crate) command: [L; NC],
     /// By how much the limits cut the command; zero where there are none.
     pub(crate) excess: [L; NC],

@@ -77,18 +77,19 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for Leg<L::Real, CUT> {
         _extra: &[L; 0],
     ) -> Response<L, LEG_JOINTS, 0> {
         let zero = [L::number(0.0); LEG_JOINTS];
-        let (mut command, mut excess, mut torque) = (zero, zero, zero);
+        let (mut wanted, mut command) = (zero, zero);
+        let (mut excess, mut torque) = (zero, zero);
         let rows_of = |c: usize| &inputs.reference[leg_rows(CUT) * c..leg_rows(CUT) * (c + 1)];
         for c in 0..LEG_JOINTS {
             // (9): M(r) (r'' + u_fb) + H(r, r').
             let rows = rows_of(c);
             let feedforward = L::splat(rows[0][3]);
-            let wanted = plus_product(feedforward, &matrix_row(rows, 1), &inputs.feedback);
+            let demanded = plus_product(feedforward, &matrix_row(rows, 1), &inputs.feedback);
             let limit = L::splat(self.max_torque[c]);
-            let limited = clamp(wanted, -limit, limit);
-            excess[c] = wanted - limited;
-            let demanded = if CUT { limited } else { wanted };
-            command[c] = demanded.mul_add(inputs.command_gain[c], inputs.command_bias[c]);
+            let limited = clamp(demanded, -limit, limit);
+            excess[c] = demanded - limited;
+            wanted[c] = if CUT { limited } else { demanded };
+            command[c] = inputs.actuator.command(c, wanted[c]);
             // The true robot is the modelled one times a number, so a torque divided by that does the same to the model.
             let force = inputs.ground[c].mul_add(L::splat(rows[2][2]), inputs.force[c]);
             torque[c] = (command[c] + force) * inputs.inverse_inertia[c];
@@ -108,6 +109,7 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for Leg<L::Real, CUT> {
         Response {
             error_acceleration,
             told,
+            wanted,
             command,
             excess,
             extra_rate: [],

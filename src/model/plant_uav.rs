@@ -66,13 +66,14 @@ impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 1>, _extra: &[L; 0]) -> Response<L, 1, 0> {
         let [_, _, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[0]);
-        let demanded = inputs.feedback[0].mul_add(L::splat(self.mass), feedforward);
-        let command = demanded.mul_add(inputs.command_gain[0], inputs.command_bias[0]);
+        let wanted = inputs.feedback[0].mul_add(L::splat(self.mass), feedforward);
+        let command = inputs.actuator.command(0, wanted);
         let force = inputs.velocity[0].mul_add(-L::splat(self.drag), command + inputs.force[0]);
         let offset = r_acceleration + L::splat(self.gravity);
         Response {
             error_acceleration: [force.mul_add(inputs.inverse_inertia[0], -offset)],
             told: inputs.feedback,
+            wanted: [wanted],
             command: [command],
             excess: [L::number(0.0)],
             extra_rate: [],
@@ -129,11 +130,11 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
         let zero = L::number(0.0);
-        let (mut command, mut torque) = ([zero; 3], [zero; 3]);
+        let (mut wanted, mut command, mut torque) = ([zero; 3], [zero; 3], [zero; 3]);
         for i in 0..3 {
             let feedforward = L::splat(inputs.reference[i][3]);
-            let demanded = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
-            command[i] = demanded.mul_add(inputs.command_gain[i], inputs.command_bias[i]);
+            wanted[i] = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
+            command[i] = inputs.actuator.command(i, wanted[i]);
             torque[i] = command[i] + inputs.force[i];
         }
         let mut error_acceleration =
@@ -144,6 +145,7 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
         Response {
             error_acceleration,
             told: inputs.feedback,
+            wanted,
             command,
             excess: [zero; 3],
             extra_rate: [],
@@ -215,7 +217,8 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         let zero = L::number(0.0);
         let [roll, pitch, roll_rate, pitch_rate] = *extra;
         let [yaw, yaw_rate, yaw_acceleration, _] = splat_row::<L>(&inputs.reference[5]);
-        let (mut told, mut command, mut excess) = ([zero; 6], [zero; 6], [zero; 6]);
+        let (mut told, mut excess) = ([zero; 6], [zero; 6]);
+        let (mut wanted, mut command) = ([zero; 6], [zero; 6]);
         let mut error_acceleration = [zero; 6];
 
         // The force that the position loop demands, (9).
@@ -254,7 +257,6 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         for i in 0..3 {
             let feedforward = L::splat(inputs.reference[i][3]);
             told[i] = thrust.mul_add(commanded_axis[i], -feedforward) * L::splat(self.inverse_mass);
-            command[i] = force[i].mul_add(inputs.command_gain[i], inputs.command_bias[i]);
         }
 
         // Torques: demanded along the filtered attitude, then limited.
@@ -268,17 +270,22 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
             let gyroscopic =
                 rates[(i + 1) % 3] * rates[(i + 2) % 3] * L::splat(self.attitude.gyro[i]);
             let non_inertial = gyroscopic.mul_add(inertia, rates[i] * L::splat(self.attitude.drag));
-            let wanted = (accelerations[i] + inputs.feedback[c]).mul_add(inertia, non_inertial);
-            let limited = clamp(wanted, -limit, limit);
-            excess[c] = wanted - limited;
+            let demanded = (accelerations[i] + inputs.feedback[c]).mul_add(inertia, non_inertial);
+            let limited = clamp(demanded, -limit, limit);
+            excess[c] = demanded - limited;
             told[c] = (limited - non_inertial)
                 .mul_add(L::splat(self.inverse_inertia[i]), -accelerations[i]);
-            command[c] = limited.mul_add(inputs.command_gain[c], inputs.command_bias[c]);
+            wanted[c] = limited;
+            command[c] = inputs.actuator.command(c, limited);
             torque[i] = command[c] + inputs.force[c];
         }
 
         // What the faults leave of the thrust acts along the true body axis.
-        let applied = thrust.mul_add(inputs.command_gain[2], inputs.command_bias[2]);
+        let applied = inputs.actuator.command(2, thrust);
+        [wanted[0], wanted[1], wanted[2]] = [fx, fy, thrust];
+        for i in 0..3 {
+            command[i] = force[i].mul_add(inputs.actuator.gain[i], inputs.actuator.bias[i]);
+        }
         let [_, _, _, true_roll, true_pitch, true_yaw] = inputs.position;
         let true_axis = body_axis(true_roll, true_pitch, true_yaw.sin_cos());
         for i in 0..3 {
@@ -301,6 +308,7 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         Response {
             error_acceleration,
             told,
+            wanted,
             command,
             excess,
             extra_rate: [roll_rate, pitch_rate, roll_acceleration, pitch_acceleration],

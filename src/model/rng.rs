@@ -52,6 +52,10 @@ pub enum Stream {
     Design = 6,
     /// Permutations of episodes in tests.
     Permutation = 7,
+    /// Which slots of time a fault hits that is there now and then.
+    Burst = 8,
+    /// The noise that drives turbulence, step by step.
+    Turbulence = 9,
 }
 
 /// Where a random number lives inside its campaign's seed.

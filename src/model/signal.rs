@@ -1,89 +1,117 @@
 //! Disturbances and faults of one agent's channels: what is held over a step, and what varies within it.
 //!
-//! Switches are evaluated at the start of a step and held through its stages, or the method would lose its order; noise is
-//! drawn once per step. The periodic parts are evaluated at each stage's time, from phases that count in fixed point.
+//! What switches, rises or is drawn is held over each step. Periodic parts are evaluated at each stage's time.
 
 #![expect(
     clippy::needless_range_loop,
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::lanes::{Lane, MAX_WIDTH};
-use super::rng::{Address, Stream};
+pub(crate) mod kernel;
 
-/// amplitude sin(phase).
-#[derive(Clone, Copy)]
-pub(crate) struct Sine<L: Lane> {
-    pub(crate) amplitude: L,
-    pub(crate) phase: L::Turns,
-    /// Turns per half step.
-    pub(crate) advance: L::Turns,
-}
+use super::lanes::{Lane, MAX_WIDTH, Real};
+use super::memory::{Actuator, Moment, Ring};
+use super::noise::{Noise, Turbulence};
+use super::switch::{Burst, Switch};
+use kernel::distortion;
 
-/// amplitude tanh(sin(phase) / smoothing), from its onset on.
+/// A periodic signal; its list says of what shape.
 #[derive(Clone, Copy)]
-pub(crate) struct Square<L: Lane> {
+pub(crate) struct Wave<L: Lane> {
+    /// Amplitude, while it is there.
     pub(crate) switch: Switch<L>,
+    /// 1 / smoothing of a square; nothing to the others.
     pub(crate) inverse_smoothing: L,
     pub(crate) phase: L::Turns,
     /// Turns per half step.
     pub(crate) advance: L::Turns,
-    /// The amplitude of this step: zero before the onset.
+    /// The amplitude of this step.
     pub(crate) held: L,
-}
-
-/// A value that is there from a step on.
-#[derive(Clone, Copy)]
-pub(crate) struct Switch<L> {
-    /// First step.
-    pub(crate) onset: L,
-    /// The value.
-    pub(crate) value: L,
-}
-
-/// Normal noise of one agent, held over each step.
-#[derive(Clone)]
-pub(crate) struct Noise<L, const NC: usize> {
-    /// Which fault of the campaign.
-    pub(crate) entry: u32,
-    /// Address of each channel.
-    pub(crate) members: [u32; NC],
-    /// Standard deviation, from the onset on.
-    pub(crate) switch: [Switch<L>; NC],
-    /// The samples of four steps: one counter gives them all.
-    pub(crate) samples: [[L; 4]; NC],
 }
 
 /// Everything that acts on one agent's channels from outside. Each list has an item per campaign entry that strikes these
 /// channels, so what a campaign does not use is not there.
 #[derive(Clone)]
 pub(crate) struct Signals<L: Lane, const NC: usize> {
-    pub(crate) sines: Vec<[Sine<L>; NC]>,
-    pub(crate) squares: Vec<[Square<L>; NC]>,
-    pub(crate) constant: [L; NC],
     /// Scale of the ground's reaction: the sum of all that the campaign names.
     pub(crate) ground: [L; NC],
-    pub(crate) losses: Vec<[Switch<L>; NC]>,
-    pub(crate) command_biases: Vec<[Switch<L>; NC]>,
-    pub(crate) sensor_biases: Vec<[Switch<L>; NC]>,
-    pub(crate) noises: Vec<Noise<L, NC>>,
-    /// Sensor bias and noise of this step.
-    pub(crate) held_sensor: [L; NC],
-    /// What actuator faults leave of the command in this step.
-    pub(crate) command_gain: [L; NC],
-    /// What actuator faults add to the command in this step.
-    pub(crate) command_bias: [L; NC],
-    /// d1 at the current stage's time.
-    pub(crate) disturbance: [L; NC],
-    /// f2 at the current stage's time.
-    pub(crate) sensor_fault: [L; NC],
-}
+    /// The part of d1 that is always there.
+    pub(crate) constant: [L; NC],
+    /// 1 / true inertia, before it changes.
+    pub(crate) first_inverse_inertia: [L; NC],
+    /// Steps for which a sampled controller holds its command; 1 for one that never rests.
+    pub(crate) hold_steps: u32,
+    /// Whether some fault comes little by little.
+    pub(crate) rises: bool,
 
-impl<L: Lane> Switch<L> {
-    #[inline(always)]
-    pub(crate) fn at(self, step: L, before: L) -> L {
-        L::select_le(self.onset, step, self.value, before)
-    }
+    /// Lost shares of the command.
+    pub(crate) losses: Vec<[Switch<L>; NC]>,
+    /// Commands that replace the wanted one.
+    pub(crate) hard_overs: Vec<[Switch<L>; NC]>,
+    pub(crate) command_biases: Vec<[Switch<L>; NC]>,
+    /// Shares of the other agents' commands that leak in.
+    pub(crate) leaks: Vec<[Switch<L>; NC]>,
+    /// Largest changes of the command per step.
+    pub(crate) rate_limits: Vec<[Switch<L>; NC]>,
+    /// By what share x and x' are measured too large.
+    pub(crate) scales: Vec<[Switch<L>; NC]>,
+    pub(crate) sensor_biases: Vec<[Switch<L>; NC]>,
+    /// By what share of its first value the inertia grows.
+    pub(crate) inertias: Vec<[Switch<L>; NC]>,
+    /// Forces that come with a shifted mass.
+    pub(crate) weights: Vec<[Switch<L>; NC]>,
+
+    /// Lost shares of the command, now and then.
+    pub(crate) intermittents: Vec<Burst<L, NC>>,
+    /// When the command stays what it was (the value is 1).
+    pub(crate) command_holds: Vec<Burst<L, NC>>,
+    /// When the measurement stays what it was (the value is 1).
+    pub(crate) sensor_holds: Vec<Burst<L, NC>>,
+    /// Sizes of measurements that are far off.
+    pub(crate) outliers: Vec<Burst<L, NC>>,
+
+    pub(crate) noises: Vec<Noise<L, NC>>,
+    pub(crate) turbulences: Vec<Turbulence<L, NC>>,
+
+    /// amplitude sin(phase), part of d1.
+    pub(crate) sines: Vec<[Wave<L>; NC]>,
+    /// amplitude (1 + sin(phase)) / 2, part of d1; one turn of it is a gust, if it begins at the bottom.
+    pub(crate) gusts: Vec<[Wave<L>; NC]>,
+    /// amplitude sin(phase), added to the command.
+    pub(crate) command_waves: Vec<[Wave<L>; NC]>,
+    /// amplitude sin(phase), part of f2.
+    pub(crate) sensor_waves: Vec<[Wave<L>; NC]>,
+    /// amplitude tanh(sin(phase) / smoothing), part of f2.
+    pub(crate) squares: Vec<[Wave<L>; NC]>,
+
+    pub(crate) command_rings: Vec<Ring<L, NC, 1>>,
+    /// Of x and x'.
+    pub(crate) sensor_rings: Vec<Ring<L, NC, 2>>,
+
+    /// What of d1 and of f2 is held over this step.
+    pub(crate) held_disturbance: [L; NC],
+    pub(crate) held_sensor: [L; NC],
+    /// What faults leave of the command in this step, and what they add to it.
+    pub(crate) command_gain: [L; NC],
+    pub(crate) command_bias: [L; NC],
+    /// By how much the command may leave the last one: at this step's start, and from there to its end.
+    pub(crate) slew: [[L; 2]; NC],
+    /// By what share x and x' are measured too large in this step.
+    pub(crate) scale: [L; NC],
+    /// Whether the measurement stays what it was (1 or 0).
+    pub(crate) frozen: [L; NC],
+    /// 1 / true inertia in this step.
+    pub(crate) inverse_inertia: [L; NC],
+
+    /// The command, and x and x' as measured, at the start of the last step.
+    pub(crate) last_command: [L; NC],
+    pub(crate) last_measured: [[L; 2]; NC],
+
+    /// d1 and f2 at the current stage's time.
+    pub(crate) disturbance: [L; NC],
+    pub(crate) sensor_fault: [L; NC],
+    /// What is between the wanted command and the acting one at the current stage's time.
+    pub(crate) actuator: Actuator<L, NC>,
 }
 
 impl<L: Lane, const NC: usize> Signals<L, NC> {
@@ -91,123 +119,382 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
     pub(crate) fn none() -> Self {
         let (zero, one) = ([L::number(0.0); NC], [L::number(1.0); NC]);
         Self {
-            sines: Vec::new(),
-            squares: Vec::new(),
-            constant: zero,
             ground: zero,
+            constant: zero,
+            first_inverse_inertia: one,
+            hold_steps: 1,
+            rises: false,
             losses: Vec::new(),
+            hard_overs: Vec::new(),
             command_biases: Vec::new(),
+            leaks: Vec::new(),
+            rate_limits: Vec::new(),
+            scales: Vec::new(),
             sensor_biases: Vec::new(),
+            inertias: Vec::new(),
+            weights: Vec::new(),
+            intermittents: Vec::new(),
+            command_holds: Vec::new(),
+            sensor_holds: Vec::new(),
+            outliers: Vec::new(),
             noises: Vec::new(),
+            turbulences: Vec::new(),
+            sines: Vec::new(),
+            gusts: Vec::new(),
+            command_waves: Vec::new(),
+            sensor_waves: Vec::new(),
+            squares: Vec::new(),
+            command_rings: Vec::new(),
+            sensor_rings: Vec::new(),
+            held_disturbance: zero,
             held_sensor: zero,
             command_gain: one,
             command_bias: zero,
+            slew: [[L::splat(L::Real::MAX); 2]; NC],
+            scale: zero,
+            frozen: zero,
+            inverse_inertia: one,
+            last_command: zero,
+            last_measured: [[L::number(0.0); 2]; NC],
             disturbance: zero,
             sensor_fault: zero,
+            actuator: Actuator::sound(),
         }
     }
 
-    /// Sets what is held over step number `step`.
+    /// Whether the command of the last step matters to this one.
+    pub(crate) fn limits_rate(&self) -> bool {
+        !self.rate_limits.is_empty() || !self.command_holds.is_empty() || self.hold_steps > 1
+    }
+
+    /// Whether a sampled controller gives a new command at the start of a step.
+    pub(crate) fn ticks(&self, step: u32) -> bool {
+        step.is_multiple_of(self.hold_steps)
+    }
+
+    /// Whether x and x' are not measured as they are.
+    pub(crate) fn distorts(&self) -> bool {
+        !self.scales.is_empty() || !self.sensor_holds.is_empty() || !self.sensor_rings.is_empty()
+    }
+
+    /// Whether anything of a step matters to the next.
+    pub(crate) fn remembers(&self) -> bool {
+        self.limits_rate()
+            || !self.leaks.is_empty()
+            || !self.sensor_holds.is_empty()
+            || !self.command_rings.is_empty()
+            || !self.sensor_rings.is_empty()
+    }
+
+    /// Whether what is held differs from step to step by more than switches turning on and off.
+    pub(crate) fn is_restless(&self) -> bool {
+        self.rises
+            || self.remembers()
+            || !self.noises.is_empty()
+            || !self.turbulences.is_empty()
+            || !self.intermittents.is_empty()
+            || !self.outliers.is_empty()
+    }
+
+    /// Sets what is held over step number `step`; `team` is the sum of the team's last commands.
     #[inline(always)]
-    pub(crate) fn hold(&mut self, step: u32, seed: u64, episodes: &[u32; MAX_WIDTH]) {
-        let (zero, one) = (L::number(0.0), L::number(1.0));
+    pub(crate) fn hold(
+        &mut self,
+        step: u32,
+        team: &[L; NC],
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
+        let one = L::number(1.0);
         let now = L::number(f64::from(step));
         for c in 0..NC {
-            let mut gain = one;
-            for loss in &self.losses {
-                gain = gain * (one - loss[c].at(now, zero));
+            self.hold_command(c, step, team[c], seed, episodes);
+            self.hold_sensor(c, step, seed, episodes);
+            let mut force = self.constant[c];
+            for weight in &self.weights {
+                force = force + weight[c].at(now);
             }
-            self.command_gain[c] = gain;
-            let mut bias = zero;
-            for added in &self.command_biases {
-                bias = bias + added[c].at(now, zero);
+            for turbulence in &self.turbulences {
+                force = force + turbulence.force(c);
             }
-            self.command_bias[c] = bias;
-            let mut sensor = zero;
-            for added in &self.sensor_biases {
-                sensor = sensor + added[c].at(now, zero);
+            self.held_disturbance[c] = force;
+            let mut grown = one;
+            for inertia in &self.inertias {
+                grown = grown + inertia[c].at(now);
             }
-            for noise in &mut self.noises {
-                if step.is_multiple_of(4) {
-                    noise.draw(c, step / 4, seed, episodes);
+            self.inverse_inertia[c] = self.first_inverse_inertia[c];
+            if !self.inertias.is_empty() {
+                self.inverse_inertia[c] = self.first_inverse_inertia[c] / grown;
+            }
+            for waves in [
+                &mut self.sines,
+                &mut self.gusts,
+                &mut self.command_waves,
+                &mut self.sensor_waves,
+                &mut self.squares,
+            ] {
+                for wave in waves {
+                    wave[c].held = wave[c].switch.at(now);
                 }
-                let sample = noise.samples[c][(step % 4) as usize];
-                sensor = sample.mul_add(noise.switch[c].at(now, zero), sensor);
-            }
-            self.held_sensor[c] = sensor;
-            for square in &mut self.squares {
-                square[c].held = square[c].switch.at(now, zero);
             }
         }
     }
 
-    /// f2 at t = 0, which the observers' first measurement includes.
-    pub(crate) fn at_start(mut self, seed: u64, episodes: &[u32; MAX_WIDTH]) -> [L; NC] {
-        self.hold(0, seed, episodes);
-        self.evaluate::<false>();
-        self.sensor_fault
+    #[inline(always)]
+    pub(crate) fn hold_command(
+        &mut self,
+        c: usize,
+        step: u32,
+        team: L,
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
+        let (zero, one) = (L::number(0.0), L::number(1.0));
+        let now = L::number(f64::from(step));
+        let far = L::splat(L::Real::MAX);
+        let mut gain = one;
+        for loss in &self.losses {
+            gain = gain * (one - loss[c].at(now));
+        }
+        for loss in &self.intermittents {
+            let [lost, _] = loss.at(c, step, seed, episodes);
+            gain = gain * (one - lost);
+        }
+        let mut bias = zero;
+        for added in &self.command_biases {
+            bias = bias + added[c].at(now);
+        }
+        for leak in &self.leaks {
+            let others = team - self.last_command[c];
+            bias = others.mul_add(leak[c].at(now), bias);
+        }
+        for over in &self.hard_overs {
+            let weight = over[c].weight(now);
+            let left = one - weight;
+            gain = gain * left;
+            bias = over[c].value.mul_add(weight, bias * left);
+        }
+        self.command_gain[c] = gain;
+        self.command_bias[c] = bias;
+        let mut slew = far;
+        for limit in &self.rate_limits {
+            slew = L::select_le(
+                L::number(0.5),
+                limit[c].weight(now),
+                limit[c].value.min(slew),
+                slew,
+            );
+        }
+        for hold in &self.command_holds {
+            let [holds, _] = hold.at(c, step, seed, episodes);
+            slew = L::select_le(L::number(0.5), holds, zero, slew);
+        }
+        let (mut at_start, mut within) = (slew, slew);
+        if self.hold_steps > 1 {
+            within = zero;
+            at_start = if self.ticks(step) { at_start } else { zero };
+        }
+        if step == 0 {
+            at_start = far;
+        }
+        self.slew[c] = [at_start, within];
+        for ring in &mut self.command_rings {
+            ring.hold(c, step);
+        }
     }
 
-    /// Evaluates d1 and f2 at the phases of the signals, after moving them on by half a step if `ADVANCE`.
     #[inline(always)]
-    pub(crate) fn evaluate<const ADVANCE: bool>(&mut self) {
-        self.disturbance = self.constant;
+    pub(crate) fn hold_sensor(
+        &mut self,
+        c: usize,
+        step: u32,
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
+        let zero = L::number(0.0);
+        let now = L::number(f64::from(step));
+        let mut sensor = zero;
+        for added in &self.sensor_biases {
+            sensor = sensor + added[c].at(now);
+        }
+        for noise in &mut self.noises {
+            if step.is_multiple_of(4) {
+                noise.draw(c, step / 4, seed, episodes);
+            }
+            let sample = noise.samples[c][(step % 4) as usize];
+            sensor = sample.mul_add(noise.switch[c].at(now), sensor);
+        }
+        for outlier in &self.outliers {
+            let [size, sign] = outlier.at(c, step, seed, episodes);
+            sensor = size.mul_add(sign, sensor);
+        }
+        self.held_sensor[c] = sensor;
+        let mut scale = zero;
+        for added in &self.scales {
+            scale = scale + added[c].at(now);
+        }
+        self.scale[c] = scale;
+        let mut frozen = zero;
+        for hold in &self.sensor_holds {
+            let [holds, _] = hold.at(c, step, seed, episodes);
+            frozen = frozen.max(holds);
+        }
+        self.frozen[c] = if step == 0 { zero } else { frozen };
+        for ring in &mut self.sensor_rings {
+            ring.hold(c, step);
+        }
+    }
+
+    /// f2 at t = 0, and by how much x and x' are measured too large then: what the observers' first measurement includes.
+    pub(crate) fn at_start(
+        mut self,
+        [reference, reference_rate]: [[L; NC]; 2],
+        initial: &[[L; 3]; NC],
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) -> ([L; NC], [[L; 2]; NC]) {
+        self.hold(0, &[L::number(0.0); NC], seed, episodes);
+        self.evaluate(Moment::Start);
+        let position = std::array::from_fn(|c| reference[c] + initial[c][1]);
+        let velocity = std::array::from_fn(|c| reference_rate[c] + initial[c][2]);
+        let off = distortion(&self, Moment::Start, &[position, velocity]);
+        (self.sensor_fault, off)
+    }
+
+    /// Evaluates d1, f2 and the actuators at a moment of the step, whose phases are half a step further each.
+    #[inline(always)]
+    pub(crate) fn evaluate(&mut self, moment: Moment) {
+        let advance = moment != Moment::Start;
+        let half = L::number(0.5);
+        self.disturbance = self.held_disturbance;
         self.sensor_fault = self.held_sensor;
+        if moment == Moment::Start
+            || !self.command_waves.is_empty()
+            || !self.command_rings.is_empty()
+        {
+            self.actuator.gain = self.command_gain;
+            self.actuator.bias = self.command_bias;
+        }
         for sines in &mut self.sines {
             for c in 0..NC {
-                let sine = &mut sines[c];
-                if ADVANCE {
-                    sine.phase = L::turns_add(sine.phase, sine.advance);
-                }
-                self.disturbance[c] =
-                    L::turns_sin(sine.phase).mul_add(sine.amplitude, self.disturbance[c]);
+                let sine = turned(&mut sines[c], advance);
+                self.disturbance[c] = sine.mul_add(sines[c].held, self.disturbance[c]);
+            }
+        }
+        for gusts in &mut self.gusts {
+            for c in 0..NC {
+                let shape = turned(&mut gusts[c], advance).mul_add(half, half);
+                self.disturbance[c] = shape.mul_add(gusts[c].held, self.disturbance[c]);
+            }
+        }
+        for waves in &mut self.sensor_waves {
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], advance);
+                self.sensor_fault[c] = sine.mul_add(waves[c].held, self.sensor_fault[c]);
             }
         }
         for squares in &mut self.squares {
             for c in 0..NC {
-                let square = &mut squares[c];
-                if ADVANCE {
-                    square.phase = L::turns_add(square.phase, square.advance);
-                }
-                let shape = (L::turns_sin(square.phase) * square.inverse_smoothing).tanh();
-                self.sensor_fault[c] = shape.mul_add(square.held, self.sensor_fault[c]);
+                let sine = turned(&mut squares[c], advance);
+                let shape = (sine * squares[c].inverse_smoothing).tanh();
+                self.sensor_fault[c] = shape.mul_add(squares[c].held, self.sensor_fault[c]);
             }
+        }
+        for waves in &mut self.command_waves {
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], advance);
+                self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
+            }
+        }
+        if !self.command_rings.is_empty() {
+            self.recall_command(moment);
+        }
+        if self.limits_rate() {
+            self.limit_rate(moment);
+        }
+    }
+
+    /// Replaces the wanted command by a past one, where the past is played.
+    #[inline(always)]
+    pub(crate) fn recall_command(&mut self, moment: Moment) {
+        let (zero, one) = (L::number(0.0), L::number(1.0));
+        for c in 0..NC {
+            let (mut wanted, mut past) = (one, [zero]);
+            for ring in &self.command_rings {
+                past = ring.recall(c, moment, past);
+                [wanted] = ring.or_past(c, [wanted], [zero]);
+            }
+            let gain = self.actuator.gain[c];
+            self.actuator.bias[c] = past[0].mul_add(gain, self.actuator.bias[c]);
+            self.actuator.gain[c] = gain * wanted;
+        }
+    }
+
+    /// Keeps the command near the last one.
+    #[inline(always)]
+    pub(crate) fn limit_rate(&mut self, moment: Moment) {
+        for c in 0..NC {
+            let [at_start, within] = self.slew[c];
+            let slew = match moment {
+                Moment::Start => at_start,
+                Moment::Middle => within * L::number(0.5),
+                Moment::End => within,
+            };
+            self.actuator.low[c] = self.last_command[c] - slew;
+            self.actuator.high[c] = self.last_command[c] + slew;
+        }
+    }
+
+    /// x and x' as they are measured at a moment of the step.
+    #[inline(always)]
+    pub(crate) fn measure(&self, c: usize, moment: Moment, motion: [L; 2]) -> [L; 2] {
+        let [position, velocity] = motion;
+        let scale = self.scale[c];
+        let mut seen = [
+            position.mul_add(scale, position),
+            velocity.mul_add(scale, velocity),
+        ];
+        for ring in &self.sensor_rings {
+            seen = ring.recall(c, moment, seen);
+        }
+        let [last_position, last_velocity] = self.last_measured[c];
+        let half = L::number(0.5);
+        [
+            L::select_le(half, self.frozen[c], last_position, seen[0]),
+            L::select_le(half, self.frozen[c], last_velocity, seen[1]),
+        ]
+    }
+
+    /// Takes in what was wanted and what was at the start of step number `step`.
+    #[inline(always)]
+    pub(crate) fn remember(&mut self, c: usize, step: u32, wanted: L, motion: [L; 2]) {
+        self.last_measured[c] = self.measure(c, Moment::Start, motion);
+        self.last_command[c] = self.actuator.command(c, wanted);
+        let mut wanted = [wanted];
+        for ring in &mut self.command_rings {
+            let recalled = ring.recall(c, Moment::Start, wanted);
+            ring.record(c, step, wanted);
+            wanted = recalled;
+        }
+        let [position, velocity] = motion;
+        let scale = self.scale[c];
+        let mut seen = [
+            position.mul_add(scale, position),
+            velocity.mul_add(scale, velocity),
+        ];
+        for ring in &mut self.sensor_rings {
+            let recalled = ring.recall(c, Moment::Start, seen);
+            ring.record(c, step, seen);
+            seen = recalled;
         }
     }
 }
 
-impl<L: Lane, const NC: usize> Noise<L, NC> {
-    /// Draws the four samples of a channel that block number `index` holds (Box and Muller's transform, twice).
-    #[inline(always)]
-    pub(crate) fn draw(
-        &mut self,
-        channel: usize,
-        index: u32,
-        seed: u64,
-        episodes: &[u32; MAX_WIDTH],
-    ) {
-        let mut words = [[0; MAX_WIDTH]; 4];
-        for lane in 0..L::WIDTH {
-            let address = Address {
-                episode: episodes[lane],
-                stream: Stream::Noise,
-                entry: self.entry,
-                member: self.members[channel],
-                index,
-            };
-            let drawn = address.words(seed);
-            for k in 0..4 {
-                words[k][lane] = drawn[k];
-            }
-        }
-        for pair in 0..2 {
-            let unit = L::unit_from_words(&words[2 * pair]);
-            let radius = (unit.ln() * L::number(-2.0)).sqrt();
-            let turn = L::turns_from_words(&words[2 * pair + 1]);
-            let quarter = L::turns(&[0.25; MAX_WIDTH]);
-            self.samples[channel][2 * pair] = radius * L::turns_sin(turn);
-            self.samples[channel][2 * pair + 1] =
-                radius * L::turns_sin(L::turns_add(turn, quarter));
-        }
+/// The sine of a wave's phase, half a step later if it is to `advance`.
+#[inline(always)]
+pub(crate) fn turned<L: Lane>(wave: &mut Wave<L>, advance: bool) -> L {
+    if advance {
+        wave.phase = L::turns_add(wave.phase, wave.advance);
     }
+    L::turns_sin(wave.phase)
 }

@@ -1,15 +1,17 @@
-//! What a run found, for people and for programs.
+//! What a run found, for people.
 
-use super::line;
-use serde_json::{Value, json};
+use super::caveats::caveats;
+use super::screening::strata;
+use super::{attenuation, line};
 use std::path::Path;
-use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{FailureRate, LEVEL, PairedComparison, Ratio};
-use urts_mc::cross_check::{CrossCheck, ERROR_LIMIT, RMSE_LIMIT};
+use urts_mc::campaign::{ALL, Campaign};
+use urts_mc::comparison::{FailureRate, Measured, PairedComparison, Ratio};
+use urts_mc::conditions::title;
+use urts_mc::cross_check::CrossCheck;
 use urts_mc::flight::{Engine, Leg};
 use urts_mc::ranking::RankedCondition;
 use urts_mc::run::Findings;
-use urts_mc::statistics::{Estimate, Interval, runs_needed};
+use urts_mc::statistics::Interval;
 use urts_mc::synthesis::ChannelRole;
 
 /// Channels that are shown one by one.
@@ -44,6 +46,7 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     }
     if let Some(check) = &manifest.cross_check {
         line(&mut text, &cross_check(check, campaign.controllers.len()));
+        text.push_str(&attenuation::groups(&check.attenuation));
     }
     line(
         &mut text,
@@ -59,23 +62,31 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         &mut text,
         &format!(
             "  {:<12} {:>14}  {:>8}  {:<19} {}",
-            "controller", "failed", "rate", "Wilson 95 %", "95 % sure below"
+            "controller",
+            "failed",
+            "rate",
+            kind_of_interval(campaign),
+            "95 % sure below"
         ),
     );
-    for failures in rates(findings, "all") {
+    for failures in rates(findings) {
         line(
             &mut text,
             &format!(
-                "  {:<12} {:>14}  {:>7.2}%  {:<19} {:.2}%{}",
+                "  {:<12} {:>14}  {:>7.2}%  {:<19} {}{}",
                 failures.controller,
                 format!("{} of {}", failures.failed(), failures.n),
                 100.0 * failures.rate(),
-                format!(
-                    "{:.2} .. {:.2}%",
-                    100.0 * failures.wilson.lower,
-                    100.0 * failures.wilson.upper
-                ),
-                100.0 * failures.upper_95,
+                failures
+                    .interval()
+                    .map_or("-".to_string(), |interval| format!(
+                        "{:.2} .. {:.2}%",
+                        100.0 * interval.lower,
+                        100.0 * interval.upper
+                    )),
+                failures
+                    .upper_95
+                    .map_or("-".to_string(), |upper| format!("{:.2}%", 100.0 * upper)),
                 if failures.diverged > 0 {
                     format!("  ({} diverged)", failures.diverged)
                 } else {
@@ -84,6 +95,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             ),
         );
     }
+    text.push_str(&caveats(campaign, findings));
+    text.push_str(&strata(campaign, findings));
     line(
         &mut text,
         "\nRMS error from settle_s on, median [95 % interval] and 95th percentile over the episodes",
@@ -103,7 +116,7 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         let cell = |group: &str| {
             let row = findings.summary.iter().find(|row| {
                 row.failures.controller == *name
-                    && row.failures.stratum == "all"
+                    && *row.failures.stratum == *ALL
                     && row.metric == "rmse"
                     && row.group == group
             });
@@ -128,12 +141,23 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     if !findings.comparisons.is_empty() {
         line(
             &mut text,
-            "\npair by pair: how many times smaller the RMS error of the first is, median [BCa 95 %], and how often it wins",
+            &format!(
+                "\npair by pair: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
+                if campaign.sampling.replicates().is_some() {
+                    "t over replicates"
+                } else {
+                    "BCa"
+                }
+            ),
         );
     }
     let names = campaign.channels().iter().map(|name| name.len());
     let width = names.max().unwrap_or(0).max(8);
-    for comparison in &findings.comparisons {
+    let of_all = findings
+        .comparisons
+        .iter()
+        .filter(|own| *own.stratum == *ALL);
+    for comparison in of_all {
         line(
             &mut text,
             &format!("  {} against {}", comparison.a, comparison.b),
@@ -165,7 +189,7 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
             );
         }
     }
-    text.push_str(&what_matters(findings));
+    text.push_str(&what_matters(campaign, findings));
     text.push_str(&worst(findings, out));
     let times = manifest.times;
     line(
@@ -211,82 +235,13 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
     )
 }
 
-/// Why the result is not to be relied on: episodes are missing, or the cross-check found too much.
-pub(crate) fn shortcoming(findings: &Findings<'_>, out: &Path) -> Option<String> {
-    let manifest = &findings.manifest;
-    let missing = manifest.interrupted.as_ref().map(|reason| {
-        format!(
-            "{reason}; the {} of {} episodes that were finished are in {}; use --backend cpu for all",
-            manifest.episodes,
-            manifest.episodes_asked,
-            out.display()
-        )
-    });
-    // A GPU that is gone cannot be checked: that it is gone has been said.
-    let unchecked = manifest
-        .cross_check_missing
-        .as_ref()
-        .filter(|_| manifest.interrupted.is_none());
-    let unchecked = unchecked.map(|reason| {
-        format!(
-            "the cross-check could not be done: {reason}; use --backend cpu, or --cross-check 0"
-        )
-    });
-    let failed = manifest.cross_check.as_ref().filter(|check| !check.holds());
-    let differs = failed.map(|check| {
-        format!(
-            "the cross-check fails: |e| differs by {:.1e} (limit {ERROR_LIMIT:.0e}), the RMS error by {:.1e} relative \
-             (limit {RMSE_LIMIT:.0e}), {} verdicts without being near a threshold (limit 0), {} flights give other \
-             numbers when repeated (limit 0); use --backend cpu, and please report this",
-            check.largest_error_difference,
-            check.largest_rmse_difference,
-            check.verdicts_differ_clearly,
-            check.not_repeated
-        )
-    });
-    let all: Vec<String> = missing
-        .into_iter()
-        .chain(unchecked)
-        .chain(differs)
-        .collect();
-    (!all.is_empty()).then(|| all.join("\n"))
-}
-
-/// The requirements that do not hold, each with the reason and what to do: one a line.
-pub(crate) fn unmet(campaign: &Campaign, findings: &Findings<'_>) -> String {
-    let unmet = findings.unmet.iter().map(|(requirement, rate)| {
-        let index = campaign
-            .requirements
-            .iter()
-            .position(|own| own == *requirement)
-            .unwrap_or_default();
-        let limit = requirement.failure_rate_upper_95;
-        let remedy = match runs_needed(limit, LEVEL, rate.failed()) {
-            Some(enough) if rate.failed() == 0 => format!("fly at least {enough} episodes"),
-            Some(enough) if rate.rate() < limit => format!(
-                "fly at least {enough} episodes, of which no more may fail, or change the controller or the limit"
-            ),
-            _ => "change the controller or the limit".to_string(),
-        };
-        format!(
-            "{}: require[{index}].failure_rate_upper_95 = {limit}: {:?} failed in {} of {} episodes, so with 95 % \
-             confidence its failure rate is known only to be below {:.4}; {remedy}",
-            campaign.path.display(),
-            requirement.controller,
-            rate.failed(),
-            rate.n,
-            rate.upper_95,
-        )
-    });
-    unmet.collect::<Vec<_>>().join("\n")
-}
-
 /// What raises failures and errors of each controller, as far as it is sure.
-fn what_matters(findings: &Findings<'_>) -> String {
+fn what_matters(campaign: &Campaign, findings: &Findings<'_>) -> String {
     let sure: Vec<&RankedCondition> = findings
         .ranking
         .iter()
-        .filter(|ranked| ranked.target.kind != "log_ratio" && ranked.p_holm <= SURE)
+        .filter(|ranked| ranked.target.kind != "log_ratio")
+        .filter(|ranked| ranked.p_holm.is_some_and(|p_holm| p_holm <= SURE))
         .collect();
     let mut text = String::new();
     if sure.is_empty() {
@@ -300,11 +255,11 @@ fn what_matters(findings: &Findings<'_>) -> String {
         let target = &same[0].target;
         let about = target.group.map_or("failures".to_string(), str::to_string);
         let strongest = same.iter().take(STRONGEST).map(|ranked| {
-            let trend = &ranked.effect.trend;
-            format!(
-                "{} {:+.2} [{:+.2}, {:+.2}]",
-                ranked.condition, trend.value, trend.interval.lower, trend.interval.upper
-            )
+            let interval = ranked.interval.map_or(String::new(), |interval| {
+                format!(" [{:+.2}, {:+.2}]", interval.lower, interval.upper)
+            });
+            let condition = title(campaign, &ranked.condition);
+            format!("{condition} {:+.2}{interval}", ranked.effect.trend.value)
         });
         let strongest: Vec<String> = strongest.collect();
         line(
@@ -370,12 +325,15 @@ fn ratio_text(ratio: &Ratio) -> String {
     let wins = ratio.win_rate.map_or(String::new(), |rate| {
         format!("  wins {:>5.1} %", 100.0 * rate.value)
     });
-    match ratio.log_ratio {
-        Some(Estimate {
-            value,
-            interval: Interval { lower, upper },
-        }) => {
-            let interval = format!("[{}, {}]", times(lower), times(upper));
+    let over_replicates = ratio.over_replicates.map(|found| Measured {
+        value: found.value,
+        interval: Some(found.interval),
+    });
+    match over_replicates.or(ratio.log_ratio) {
+        Some(Measured { value, interval }) => {
+            let interval = interval.map_or("[-]".to_string(), |Interval { lower, upper }| {
+                format!("[{}, {}]", times(lower), times(upper))
+            });
             format!("{:>8} {interval:<19}{wins}", times(value))
         }
         None => "no episodes".to_string(),
@@ -394,80 +352,47 @@ fn times(log_ratio: f64) -> String {
 fn failures_text(comparison: &PairedComparison) -> String {
     let failures = &comparison.failures;
     let difference = comparison.difference.map_or(String::new(), |difference| {
-        format!(
-            "{:+.2} % [{:+.2}, {:+.2}], ",
-            100.0 * difference.value,
-            100.0 * difference.interval.lower,
-            100.0 * difference.interval.upper
-        )
+        let interval = difference.interval.map_or(String::new(), |interval| {
+            format!(
+                " [{:+.2}, {:+.2}]",
+                100.0 * interval.lower,
+                100.0 * interval.upper
+            )
+        });
+        format!("{:+.2} %{interval}, ", 100.0 * difference.value)
     });
     format!(
-        "{difference}only {} {}, only {} {}, both {}, McNemar mid-p {:.2e}",
+        "{difference}only {} {}, only {} {}, both {}{}",
         comparison.a,
         failures.only_a,
         comparison.b,
         failures.only_b,
         failures.both,
-        comparison.mid_p
+        comparison.mid_p.map_or(String::new(), |mid_p| format!(
+            ", McNemar mid-p {mid_p:.2e}"
+        )),
     )
 }
 
-fn rates<'a>(findings: &'a Findings<'_>, stratum: &str) -> Vec<&'a FailureRate> {
+/// What the intervals of failure rates are.
+fn kind_of_interval(campaign: &Campaign) -> &'static str {
+    if campaign.sampling.replicates().is_some() {
+        "t 95 %"
+    } else if campaign.stop.is_some() {
+        "sequential 95 %"
+    } else {
+        "Wilson 95 %"
+    }
+}
+
+/// The failure rates of all episodes.
+fn rates<'a>(findings: &'a Findings<'_>) -> Vec<&'a FailureRate> {
     let mut rates: Vec<&FailureRate> = findings
         .summary
         .iter()
         .map(|row| &row.failures)
-        .filter(|failures| failures.stratum == stratum)
+        .filter(|failures| *failures.stratum == *ALL)
         .collect();
     rates.dedup();
     rates
-}
-
-/// The findings of a run for programs.
-pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
-    let interval = |interval: Interval| json!([finite(interval.lower), finite(interval.upper)]);
-    let estimate = |estimate: Option<Estimate>| {
-        estimate.map(|estimate| json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval) }))
-    };
-    let rate = |rate: &FailureRate| {
-        json!({
-            "controller": rate.controller, "stratum": rate.stratum, "n": rate.n, "failed": rate.failed(),
-            "exceeded": rate.exceeded, "diverged": rate.diverged, "failure_rate": rate.rate(),
-            "wilson_95": interval(rate.wilson), "upper_95": rate.upper_95,
-        })
-    };
-    json!({
-        "manifest": findings.manifest,
-        "failures": findings.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
-            if rates.last() != Some(&failures) { rates.push(failures); }
-            rates
-        }).into_iter().map(rate).collect::<Vec<_>>(),
-        "comparisons": findings.comparisons.iter().map(|comparison| json!({
-            "a": comparison.a, "b": comparison.b,
-            "both_failed": comparison.failures.both, "only_a_failed": comparison.failures.only_a,
-            "only_b_failed": comparison.failures.only_b, "neither_failed": comparison.failures.neither,
-            "mcnemar_mid_p": comparison.mid_p, "failure_rate_difference": estimate(comparison.difference),
-            "log_ratios": comparison.ratios.iter().map(|ratio| json!({
-                "scope": ratio.scope, "name": ratio.name, "log_ratio": estimate(ratio.log_ratio),
-                "win_rate": estimate(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
-            })).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
-        "ranking": findings.ranking.iter().map(|ranked| json!({
-            "target": ranked.target.kind, "controller": ranked.target.controller, "against": ranked.target.against,
-            "group": ranked.target.group, "condition": ranked.condition, "episodes": ranked.effect.n,
-            "trend": estimate(Some(ranked.effect.trend)), "shape": ranked.effect.shape, "p_holm": ranked.p_holm,
-        })).collect::<Vec<_>>(),
-        "worst_episodes": findings.worst.iter().map(|worst| json!({
-            "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
-            "largest_error_over_limit": finite(worst.excess), "agent": worst.agent, "channel": *worst.channel,
-        })).collect::<Vec<_>>(),
-        "unmet_requirements": findings.unmet.iter().map(|(requirement, found)| json!({
-            "controller": requirement.controller, "limit": requirement.failure_rate_upper_95, "found": rate(found),
-        })).collect::<Vec<_>>(),
-    })
-}
-
-/// JSON has no infinity: it is written as null, as in the Parquet tables' readers.
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }

@@ -2,7 +2,7 @@
 
 use super::line;
 use serde_json::{Value, json};
-use urts_mc::campaign::{Agent, Campaign};
+use urts_mc::campaign::{Agent, Campaign, Goal, StratumFaults};
 use urts_mc::draw::draw;
 use urts_mc::gains::GainSet;
 
@@ -46,6 +46,9 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             (work / (1e6 * rate)).ceil()
         ),
     );
+    for sentence in design(campaign) {
+        line(&mut text, &format!("  {sentence}"));
+    }
     for controller in &gains.controllers {
         for (group, channel) in campaign.channel_groups().iter().zip(&controller.groups) {
             let level = channel
@@ -87,10 +90,60 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     text
 }
 
+/// How the episodes are divided, drawn and ended, where that is not as usual.
+fn design(campaign: &Campaign) -> Vec<String> {
+    let mut sentences = Vec::new();
+    let strata = &campaign.strata;
+    for stratum in strata.all() {
+        let faults = match &stratum.faults {
+            StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
+            StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
+            StratumFaults::Certain(faults) => {
+                let names = faults.iter().filter_map(|&k| campaign.faults.get(k));
+                let names: Vec<&str> = names.map(|fault| &*fault.name).collect();
+                format!("{} in every agent", names.join(" + "))
+            }
+        };
+        sentences.push(format!(
+            "stratum {:?}: {} of every {} episodes, {faults}",
+            stratum.name,
+            stratum.share,
+            strata.turn()
+        ));
+    }
+    if let Some(replicates) = campaign.sampling.replicates() {
+        sentences.push(format!(
+            "sampling: {:?}, {replicates} replicates of {} episodes",
+            campaign.sampling.design(),
+            campaign.episodes / replicates.max(1)
+        ));
+    }
+    if let Some(stop) = &campaign.stop {
+        let goal = |goal: &Goal| match goal {
+            Goal::Below(limit) => format!("is below {limit}"),
+            Goal::Above(limit) => format!("is above {limit}"),
+            Goal::HalfWidth(width) => format!("is known to within {width} either way"),
+        };
+        let goals: Vec<String> = stop.goals.iter().map(goal).collect();
+        sentences.push(format!(
+            "stops early once it is {} % sure that the failure rate of {} {}; it looks every {} episodes",
+            100.0 * stop.confidence,
+            campaign.controllers[stop.controller],
+            goals.join(" or "),
+            stop.every
+        ));
+    }
+    sentences
+}
+
 /// [`plan`] for programs.
 pub(crate) fn plan_json(campaign: &Campaign) -> Value {
     json!({
         "name": campaign.name, "episodes": campaign.episodes, "team": campaign.team, "seed": campaign.seed,
+        "strata": campaign.strata.all().iter().map(|stratum| json!({
+            "name": *stratum.name, "share": stratum.share,
+        })).collect::<Vec<_>>(),
+        "design": design(campaign),
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
         "drawn": ranges(campaign).into_iter().map(|(name, low, high, count)| json!({
             "name": name, "lowest": low, "highest": high, "values": count,
@@ -113,6 +166,9 @@ fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
                 add("inertia_scale".into(), &[agent.inertia_scale]);
             }
             add("kappa".into(), &[agent.kappa]);
+            if campaign.control.delay_s.is_some() {
+                add("control delay_s".into(), &[agent.control_delay_s]);
+            }
             add("initial error".into(), &agent.error);
             add("initial error_rate".into(), &agent.error_rate);
             add("initial error_integral".into(), &agent.error_integral);
@@ -142,6 +198,12 @@ fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
                 );
                 if draw.occurs() {
                     add(format!("fault[{k}] {kind} onset_s"), &[draw.onset_s]);
+                    if fault.duration_s.is_some() {
+                        add(format!("fault[{k}] {kind} duration_s"), &[draw.duration_s]);
+                    }
+                    if fault.ramp_s.is_some() {
+                        add(format!("fault[{k}] {kind} ramp_s"), &[draw.ramp_s]);
+                    }
                 }
                 for (parameter, values) in fault.kind.parameters().iter().zip(&draw.parameters) {
                     add(

@@ -12,6 +12,7 @@
 //! | what can be claimed about its failure rate? | [`clopper_pearson_upper`] | exact one-sided bound |
 //! | how bad is its 95th percentile? | [`quantile()`], [`quantile_interval`] | order statistics |
 //! | does A fail less often than B? | [`mcnemar_mid_p`], [`paired_difference`] | mid-p, Tango's score |
+//! | by how much do two independent samples differ? | [`independent_difference`] | MOVER, Newcombe |
 //! | by how much is A's metric better? | [`median_bca`] | BCa with the ideal bootstrap |
 //! | in which share of episodes is A better? | [`win_rate`] | Tango's score |
 //! | how many runs does a claim need? | [`runs_needed`], [`failures_allowed`], [`power`] | exact binomial |
@@ -26,6 +27,7 @@
 
 mod binomial;
 mod correlation;
+mod difference;
 mod effect;
 mod holm;
 mod median;
@@ -39,6 +41,7 @@ mod sequential;
 mod student;
 
 pub use correlation::{somers_d, spearman};
+pub use difference::independent_difference;
 pub use effect::{Effect, Outcome, Permutations, effects};
 pub use holm::holm;
 pub use median::median_bca;

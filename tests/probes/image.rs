@@ -3,18 +3,26 @@
 
 use super::harness::Expected;
 use super::tracked::Tracked;
+use crate::backend::gpu::lists::{Lists, waves};
+use crate::model::agent::Agent;
 use crate::model::controller::FTC_STATES;
-use crate::model::group::Agent;
+use crate::model::memory::Ring;
 use crate::model::metric::Sums;
 
-/// Words of the image that every shape has, before the phases of its signals.
-pub(super) const FIXED_IMAGE: usize = 53;
+/// Words of the image that every shape has, before its waves and rings.
+const FIXED_IMAGE: usize = 67;
 /// Where in the image it is told when the channel failed.
 pub(super) const FAILED: usize = 51;
 /// States that the shaders have room for.
 const STATES: usize = FTC_STATES + 2;
 /// Where the command filter's states are.
 const EXTRA: usize = FTC_STATES;
+
+/// Words of the image.
+pub(super) fn image_words(lists: &Lists) -> usize {
+    let [_, waves, rings] = lists.groups();
+    FIXED_IMAGE + 2 * waves + 5 * rings
+}
 
 /// The image of an agent's channel.
 pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
@@ -59,29 +67,99 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words.extend([metrics.largest, metrics.largest_command].map(Near));
     words.extend([metrics.outside, metrics.outside_before_fault].map(Last));
     words.extend([First(agent.failed), next_change]);
-    words.extend(signals.sines.iter().map(|sine| Bits(sine[c].phase)));
-    for square in &signals.squares {
-        words.extend([Bits(square[c].phase), Near(square[c].held)]);
+    let (slew, last_measured) = (signals.slew[c], signals.last_measured[c]);
+    for held in [
+        signals.held_disturbance,
+        signals.scale,
+        signals.frozen,
+        signals.inverse_inertia,
+        signals.actuator.gain,
+        signals.actuator.bias,
+        signals.actuator.low,
+        signals.actuator.high,
+        signals.last_command,
+        agent.held_feedback,
+    ] {
+        words.push(Near(held[c]));
+    }
+    words.extend(slew.into_iter().chain(last_measured).map(Near));
+    for wave in waves(signals) {
+        words.extend([Bits(wave[c].phase), Near(wave[c].held)]);
+    }
+    let none = Tracked::exact(0.0);
+    for ring in &signals.command_rings {
+        let [[start], [end]] = ring.past[c];
+        words.extend([ring.plays[c], start, none, end, none].map(Near));
+    }
+    for ring in &signals.sensor_rings {
+        words.push(Near(ring.plays[c]));
+        words.extend(ring.past[c].as_flattened().iter().copied().map(Near));
     }
     words
 }
 
-/// The words of an agent's channel between two spans, in the order of `Words::named`.
+/// The words of an agent's channel in the state buffer, in the order of `Words::named`, and of each whether it is there all the
+/// time, and not only between two spans.
 pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
     agent: &Agent<Tracked, NC, NS, NX>,
     c: usize,
-) -> Vec<Expected> {
+    lists: &Lists,
+) -> Vec<(Expected, bool)> {
     use Expected::Near;
     let image = image(agent, c, Expected::Any);
+    let signals = &agent.signals;
     // Of the verdict and the extremes; see `Words::named`.
-    let mut stored = vec![image[51], image[49], image[50], image[47], image[48]];
-    stored.extend(&image[41..47]);
-    stored.extend(sums(&agent.metrics[c].total).map(Near));
-    stored.extend(&image[..if NX == 0 { FTC_STATES } else { STATES }]);
-    for noise in &agent.signals.noises {
-        stored.extend(noise.samples[c].map(Near));
+    let mut kept = vec![image[51], image[49], image[50], image[47], image[48]];
+    kept.extend(&image[41..47]);
+    let totals = sums(&agent.metrics[c].total).map(Near);
+    let channel = &image[..if NX == 0 { FTC_STATES } else { STATES }];
+    let mut there: Vec<Expected> = Vec::new();
+    for noise in &signals.noises {
+        there.extend(noise.samples[c].map(Near));
     }
-    stored
+    for turbulence in &signals.turbulences {
+        there.extend(turbulence.state[c].map(Near));
+    }
+    let [position, velocity] = signals.last_measured[c];
+    let (command, feedback) = (signals.last_command[c], agent.held_feedback[c]);
+    let memory = [command, position, velocity, feedback].map(Near);
+    let memory: &[Expected] = if lists.remembers { &memory } else { &[] };
+    let mut samples = Vec::new();
+    for ring in &signals.command_rings {
+        samples.extend(ring_samples(ring, c, lists.ring_steps));
+    }
+    for ring in &signals.sensor_rings {
+        samples.extend(ring_samples(ring, c, lists.ring_steps));
+    }
+    let between = |words: &[Expected]| words.iter().map(|&word| (word, false)).collect::<Vec<_>>();
+    let always = |words: &[Expected]| words.iter().map(|&word| (word, true)).collect::<Vec<_>>();
+    [
+        between(&kept),
+        always(&totals),
+        between(channel),
+        always(&there),
+        between(memory),
+        always(&samples),
+    ]
+    .concat()
+}
+
+/// The samples of a channel's ring, signal by signal; places beyond its length stay as they were, at zero.
+fn ring_samples<const NC: usize, const NV: usize>(
+    ring: &Ring<Tracked, NC, NV>,
+    c: usize,
+    places: usize,
+) -> Vec<Expected> {
+    let length = ring.length[c][0];
+    let mut samples = vec![Expected::Bits(0); NV * places];
+    for place in 0..length {
+        // At this step it is the oldest.
+        let sample = ring.read(c, length + place);
+        for (v, &number) in sample.iter().enumerate() {
+            samples[v * places + place as usize] = Expected::Near(number);
+        }
+    }
+    samples
 }
 
 fn sums(sums: &Sums<Tracked>) -> [Tracked; 6] {

@@ -9,6 +9,7 @@ use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
 use crate::campaign::{Campaign, FIRST_ATTITUDE};
 use crate::draw::MEMBERS_PER_AGENT;
+use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
 use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
@@ -58,7 +59,7 @@ macro_rules! offsets {
 #[test]
 fn val_every_shape_is_valid_wgsl() {
     let shapes = shapes::validated();
-    assert_eq!(shapes.len(), 192);
+    assert_eq!(shapes.len(), 576);
     for shape in shapes.iter().chain(&shapes::probed()) {
         let module = module(shape);
         let entries: Vec<&str> = module
@@ -223,6 +224,23 @@ fn evaluate(module: &Module, expression: Handle<Expression>, words: &mut Vec<u32
 }
 
 #[test]
+fn val_workgroup_memory_is_what_adapters_are_asked_for() {
+    for shape in shapes::probed() {
+        let module = module(&shape);
+        let shared = module.global_variables.iter();
+        let shared = shared.filter(|(_, variable)| variable.space == AddressSpace::WorkGroup);
+        let bytes = shared.map(|(_, variable)| {
+            let inner = &module.types[variable.ty].inner;
+            inner.size(module.to_ctx()) as usize
+        });
+        assert_eq!(bytes.sum::<usize>(), shape.shared_bytes(), "{shape:?}");
+        // The last of what a channel shows lies within: numbers of both halves, then a command that leaks.
+        let leaks = usize::from(shape.leaks());
+        assert_eq!(shape.published(), 2 * shape.shared() + leaks);
+    }
+}
+
+#[test]
 fn val_constants_are_those_of_rust() {
     for shape in shapes::probed() {
         let module = module(&shape);
@@ -244,7 +262,15 @@ fn val_constants_are_those_of_rust() {
             ("KINDS", count(shape.kinds())),
             ("SHARED", count(shape.shared())),
             ("FIRST_ATTITUDE", count(FIRST_ATTITUDE)),
-            ("COUPLED", flag(shape.coupled)),
+            ("COUPLED", flag(shape.coupling != Coupling::None)),
+            ("CENTROID", flag(shape.coupling == Coupling::Centroid)),
+            ("TEAM_SHARE", number(1.0 / shape.team as f64)),
+            ("MEASURED_INTEGRAL", flag(shape.measured_integral)),
+            ("RESTLESS", flag(shape.lists.restless)),
+            ("REMEMBERS", flag(shape.lists.remembers)),
+            ("LIMITS_RATE", flag(shape.lists.limits_rate)),
+            ("DISTORTS", flag(shape.lists.distorts)),
+            ("PUBLISHED", count(shape.published())),
             ("FTC", flag(shape.ftc)),
             ("CUT", flag(shape.cut)),
             ("LIMITED", flag(shape.limited())),
@@ -262,6 +288,8 @@ fn val_constants_are_those_of_rust() {
             ("MULTIPLIERS", rng::MULTIPLIERS.to_vec()),
             ("WEYL", rng::WEYL.to_vec()),
             ("STREAM_NOISE", count(Stream::Noise as usize)),
+            ("STREAM_BURST", count(Stream::Burst as usize)),
+            ("STREAM_TURBULENCE", count(Stream::Turbulence as usize)),
             ("MEMBERS_PER_AGENT", count(MEMBERS_PER_AGENT)),
             ("UNIT_SPACING", number(math::UNIT_SPACING)),
             ("QUARTER_TURN", vec![math::QUARTER_TURN]),
@@ -285,18 +313,29 @@ fn val_constants_are_those_of_rust() {
             ("TANH_NUMERATOR", numbers(&math::TANH_NUMERATOR)),
             ("TANH_DENOMINATOR", numbers(&math::TANH_DENOMINATOR)),
         ];
+        let named = shape.words().named();
         expected.extend(
-            shape
-                .words()
-                .named()
-                .into_iter()
-                .map(|(name, word)| (name, count(word))),
+            named
+                .iter()
+                .map(|(name, word)| (name.as_str(), count(*word))),
         );
         let of_the_plant = shape.plant_constants.iter();
         expected.extend(of_the_plant.map(|(name, value)| (name.as_str(), vec![*value])));
-        if !shape.noise_entries.is_empty() {
-            expected.push(("NOISE_ENTRIES", shape.noise_entries.clone()));
-        }
+        // An array must not be empty.
+        let list = |mut words: Vec<u32>| {
+            words.resize(words.len().max(1), 0);
+            words
+        };
+        let lists = &shape.lists;
+        let (entries, together): (Vec<u32>, Vec<bool>) = lists.bursts.iter().copied().unzip();
+        let flags = |flags: &[bool]| list(flags.iter().map(|&flag| u32::from(flag)).collect());
+        expected.extend([
+            ("NOISE_ENTRIES", list(lists.noise_entries.clone())),
+            ("TURBULENCE_ENTRIES", list(lists.turbulence_entries.clone())),
+            ("BURST_ENTRIES", list(entries)),
+            ("BURST_TOGETHER", flags(&together)),
+            ("RING_RECORDS", flags(&lists.rings)),
+        ]);
         for (name, words) in expected {
             assert_eq!(constant(&module, name), words, "{name} of {shape:?}");
         }

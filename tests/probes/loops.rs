@@ -4,7 +4,7 @@ use super::harness::{Compared, Expected, Lab};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
-use crate::model::controller::{fault_estimates, feedback, injected, step_channel};
+use crate::model::controller::{Measured, fault_estimates, feedback, injected, step_channel};
 use crate::model::integrator::Step;
 use crate::model::plant::{Inputs, ReferenceRow, Response};
 use crate::model::plant_uav::Attitude;
@@ -158,18 +158,25 @@ pub(super) fn step_channels<P: Flies<NC, NX>, const NC: usize, const NS: usize, 
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
     let h = Step::new(world.step_s);
-    let body = "load(); step_channel(stage, number(0u), number(1u), number(2u));";
-    world.check(lab, body, 0, sized([20.0, 1.0, 5.0]), |scene| {
+    let body = "
+        load();
+        step_channel(stage, number(0u), number(1u), vec2(number(3u), number(4u)), number(2u));";
+    world.check(lab, body, 0, sized([20.0, 1.0, 5.0, 1.0, 1.0]), |scene| {
         let stage = scene.stage;
         scene.each(|scene, a, c| {
-            let [acceleration, fault, told] = scene.numbers(a, c);
+            let [acceleration, sensor_fault, told, off, off_rate] = scene.numbers(a, c);
+            let measured = Measured {
+                sensor_fault,
+                off: [off, off_rate],
+                integral: world.shape.measured_integral,
+            };
             let channel = &mut scene.group.agents[a].channels[c];
             at_stage!(stage, STAGE, {
                 step_channel::<_, NS, STAGE>(
                     &world.gains[c],
                     channel,
                     acceleration,
-                    fault,
+                    &measured,
                     told,
                     &h,
                 );
@@ -230,6 +237,7 @@ pub(super) fn answer_response<const NC: usize, const NS: usize, const NX: usize>
 ) {
     scene.answer_number(a, c, response.error_acceleration[c]);
     scene.answer_number(a, c, response.told[c]);
+    scene.answer_number(a, c, response.wanted[c]);
     scene.answer_number(a, c, response.command[c]);
     // What no limit cuts is not cut by a rounding error either: saturation is told by an exact zero.
     let excess = response.excess[c];
@@ -262,7 +270,7 @@ pub(super) fn plant<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         workgroupBarrier();
         answer_response(respond(stage, inputs));";
     let sizes = [1.0, 1.0, 2.0, 3.0, 4.0, 2.0, 1.0, 1.0];
-    world.check(lab, body, 6, sized(sizes), |scene| {
+    world.check(lab, body, 7, sized(sizes), |scene| {
         let stage = scene.stage;
         scene.each(|scene, a, c| {
             let rows = rows(world, scene, a);
@@ -275,9 +283,8 @@ pub(super) fn plant<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
                 velocity: input(6),
                 force: input(7),
                 ground: &agent.signals.ground,
-                command_gain: &agent.signals.command_gain,
-                command_bias: &agent.signals.command_bias,
-                inverse_inertia: &agent.inverse_inertia,
+                actuator: &agent.signals.actuator,
+                inverse_inertia: &agent.signals.inverse_inertia,
             };
             let extra = at_stage!(stage, STAGE, *agent.extra.at::<STAGE>());
             let response = world.plant.respond(&inputs, &extra);
@@ -307,7 +314,7 @@ pub(super) fn rotation<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
                 return scene.answer(a, c, Expected::Any);
             }
             let input = |k: usize| std::array::from_fn(|i| scene.number(a, first + i, k));
-            let inverse = &scene.group.agents[a].inverse_inertia;
+            let inverse = &scene.group.agents[a].signals.inverse_inertia;
             let inverse = std::array::from_fn(|i| inverse[first + i]);
             let acceleration = attitude.acceleration::<Tracked>(input(0), input(1), inverse);
             scene.answer_number(a, c, acceleration[c - first]);

@@ -49,10 +49,11 @@ fn answer_number(k: u32, value: f32) {
 fn answer_response(response: Response) {
     answer_number(0u, response.error_acceleration);
     answer_number(1u, response.told);
-    answer_number(2u, response.command);
-    answer_number(3u, response.excess);
-    answer_number(4u, response.extra_rate.x);
-    answer_number(5u, response.extra_rate.y);
+    answer_number(2u, response.wanted);
+    answer_number(3u, response.command);
+    answer_number(4u, response.excess);
+    answer_number(5u, response.extra_rate.x);
+    answer_number(6u, response.extra_rate.y);
 }
 
 // The private state, from the image of it that the probe is given.
@@ -82,12 +83,32 @@ fn load() {
     own.failed = taken(51u);
     own.next_change = taken(52u);
     signals_begin(0u);
-    for (var k = 0u; k < N_SINES; k++) {
-        sines[k].phase = taken(53u + k);
+    held_disturbance = taken_number(53u);
+    scale = taken_number(54u);
+    frozen = taken_number(55u);
+    inverse_inertia = taken_number(56u);
+    actuator = Actuator(taken_number(57u), taken_number(58u), taken_number(59u), taken_number(60u));
+    last_command = taken_number(61u);
+    own.held_feedback = taken_number(62u);
+    slew = vec2(taken_number(63u), taken_number(64u));
+    last_measured = vec2(taken_number(65u), taken_number(66u));
+    var at = 67u;
+    for (var k = 0u; k < N_WAVES; k++) {
+        waves[k].phase = taken(at);
+        waves[k].held = taken_number(at + 1u);
+        at += 2u;
     }
-    for (var k = 0u; k < N_SQUARES; k++) {
-        squares[k].phase = taken(53u + N_SINES + 2u * k);
-        squares[k].held = taken_number(54u + N_SINES + 2u * k);
+    for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) {
+        pasts[k] = Past(
+            taken_number(at),
+            vec2(taken_number(at + 1u), taken_number(at + 2u)),
+            vec2(taken_number(at + 3u), taken_number(at + 4u)),
+        );
+        at += 5u;
+    }
+    if N_LEAKS > 0u {
+        published[command_slot(own.agent)] = last_command;
+        workgroupBarrier();
     }
 }
 
@@ -115,12 +136,33 @@ fn leave() {
     give(50u, bitcast<u32>(outside_before_fault));
     give(51u, own.failed);
     give(52u, own.next_change);
-    for (var k = 0u; k < N_SINES; k++) {
-        give(53u + k, sines[k].phase);
+    give_number(53u, held_disturbance);
+    give_number(54u, scale);
+    give_number(55u, frozen);
+    give_number(56u, inverse_inertia);
+    give_number(57u, actuator.gain);
+    give_number(58u, actuator.bias);
+    give_number(59u, actuator.low);
+    give_number(60u, actuator.high);
+    give_number(61u, last_command);
+    give_number(62u, own.held_feedback);
+    give_number(63u, slew.x);
+    give_number(64u, slew.y);
+    give_number(65u, last_measured.x);
+    give_number(66u, last_measured.y);
+    var at = 67u;
+    for (var k = 0u; k < N_WAVES; k++) {
+        give(at, waves[k].phase);
+        give_number(at + 1u, waves[k].held);
+        at += 2u;
     }
-    for (var k = 0u; k < N_SQUARES; k++) {
-        give(53u + N_SINES + 2u * k, squares[k].phase);
-        give_number(54u + N_SINES + 2u * k, squares[k].held);
+    for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) {
+        give_number(at, pasts[k].plays);
+        give_number(at + 1u, pasts[k].start.x);
+        give_number(at + 2u, pasts[k].start.y);
+        give_number(at + 3u, pasts[k].end.x);
+        give_number(at + 4u, pasts[k].end.y);
+        at += 5u;
     }
 }
 

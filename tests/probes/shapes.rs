@@ -1,33 +1,79 @@
 //! The shapes that are checked and probed.
 
+use crate::backend::gpu::lists::{LISTS, Lists};
 use crate::backend::gpu::shader::PLANTS;
 use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::Counts;
 use crate::campaign::{ActuationKind, Uav};
+use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;
 use crate::model::plant_biped::Leg;
 use crate::model::plant_uav::{Attitude, Axis, Thrust};
 use crate::robot::Robot;
 use std::path::Path;
 
+/// How many items each list has, in the order of [`LISTS`], and how many turbulences there are.
+type Counts = ([usize; LISTS.len()], usize);
+
 /// No signal.
-const NONE: Counts = Counts {
-    losses: 0,
-    command_biases: 0,
-    sensor_biases: 0,
-    noises: 0,
-    squares: 0,
-    sines: 0,
-};
-/// Several of each kind, in numbers that no two kinds next to each other share.
-const ALL: Counts = Counts {
-    losses: 2,
-    command_biases: 1,
-    sensor_biases: 2,
-    noises: 2,
-    squares: 1,
-    sines: 2,
-};
+const NONE: Counts = ([0; LISTS.len()], 0);
+/// Several of each kind, in numbers that no two lists next to each other share.
+const ALL: Counts = (
+    [
+        2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2,
+    ],
+    2,
+);
+/// The same with fewer, which the larger plants have: their texts take long to compile.
+const EACH: Counts = (
+    [
+        1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1,
+    ],
+    1,
+);
+/// Only what needs no look at every step: it changes when switches turn, at once.
+const QUIET: Counts = (
+    [
+        1, 2, 1, 0, 0, 2, 1, 2, 1, 0, 0, 0, 0, 0, 2, 1, 2, 1, 2, 0, 0,
+    ],
+    0,
+);
+/// One noise.
+const NOISY: Counts = single(9);
+/// Samples that rings have room for; some are shorter than this.
+pub(super) const RING_STEPS: usize = 11;
+
+/// One item of one list.
+const fn single(list: usize) -> Counts {
+    let mut counts = [0; LISTS.len()];
+    counts[list] = 1;
+    (counts, 0)
+}
+
+/// The lists of these counts, with the flags that they imply.
+fn lists((counts, turbulences): Counts) -> Lists {
+    let count = |name: &str| counts[LISTS.iter().position(|list| *list == name).unwrap()];
+    let any = |names: &[&str]| names.iter().any(|name| count(name) > 0);
+    let limits_rate = any(&["RATE_LIMITS", "COMMAND_HOLDS"]);
+    let remembers = limits_rate || any(&["LEAKS", "SENSOR_HOLDS", "COMMAND_RINGS", "SENSOR_RINGS"]);
+    let bursts = ["INTERMITTENTS", "COMMAND_HOLDS", "SENSOR_HOLDS", "OUTLIERS"];
+    let bursts = bursts.map(count).iter().sum();
+    let rings = count("COMMAND_RINGS") + count("SENSOR_RINGS");
+    let entries = |first: u32, count: usize| (first..).step_by(4).take(count).collect();
+    let entry = |k: usize| 2 + 3 * k as u32;
+    Lists {
+        counts,
+        noise_entries: entries(3, count("NOISES")),
+        turbulence_entries: entries(1, turbulences),
+        bursts: (0..bursts).map(|k| (entry(k), k % 2 == 1)).collect(),
+        rings: (0..rings).map(|k| k % 2 == 0).collect(),
+        ring_steps: RING_STEPS,
+        hold_steps: 1,
+        restless: remembers || turbulences > 0 || any(&["NOISES", "INTERMITTENTS", "OUTLIERS"]),
+        remembers,
+        limits_rate,
+        distorts: any(&["SCALES", "SENSOR_HOLDS", "SENSOR_RINGS"]),
+    }
+}
 
 fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts) -> Shape {
     let channels = match plant {
@@ -54,10 +100,14 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
         team,
         lanes: if channels * team > 9 { 4 } else { 8 },
         ftc,
-        coupled,
+        coupling: if coupled {
+            Coupling::Absolute
+        } else {
+            Coupling::None
+        },
+        measured_integral: false,
         observer_measured: coupled,
-        counts,
-        noise_entries: [3, 7].into_iter().take(counts.noises).collect(),
+        lists: lists(counts),
     }
 }
 
@@ -72,33 +122,36 @@ pub(super) fn plain() -> Shape {
 /// The shapes whose functions are probed: each plant for one agent and for a coupled team, each controller, without and with
 /// signals.
 pub(super) fn probed() -> [Shape; 8] {
-    let noisy = Counts { noises: 1, ..NONE };
     [
         shape(PlantKind::Axis, 1, true, false, ALL),
-        shape(PlantKind::Axis, 3, false, true, noisy),
+        shape(PlantKind::Axis, 3, false, true, QUIET),
         shape(PlantKind::Attitude, 1, false, false, NONE),
         shape(PlantKind::Attitude, 3, true, true, ALL),
-        shape(PlantKind::Thrust, 1, false, false, ALL),
-        shape(PlantKind::Thrust, 3, true, true, ALL),
-        shape(PlantKind::Leg, 1, false, false, ALL),
-        shape(PlantKind::Leg, 2, true, true, noisy),
+        shape(PlantKind::Thrust, 1, false, false, EACH),
+        sampled(shape(PlantKind::Thrust, 3, true, true, EACH)),
+        shape(PlantKind::Leg, 1, false, false, EACH),
+        shape(PlantKind::Leg, 2, true, true, NOISY),
     ]
+}
+
+/// The same with what a campaign may choose differently: a sampled controller, integrals of what is measured, and a coupling
+/// around the centroid.
+fn sampled(shape: Shape) -> Shape {
+    Shape {
+        coupling: Coupling::Centroid,
+        measured_integral: true,
+        lists: Lists {
+            hold_steps: 3,
+            ..shape.lists
+        },
+        ..shape
+    }
 }
 
 /// The shapes whose text is validated: every plant, controller and team size, each kind of signal on its own, all and none.
 pub(super) fn validated() -> Vec<Shape> {
-    let single = |k: usize| {
-        let one = |kind: usize| usize::from(k == kind);
-        Counts {
-            losses: one(0),
-            command_biases: one(1),
-            sensor_biases: one(2),
-            noises: one(3),
-            squares: one(4),
-            sines: one(5),
-        }
-    };
-    let counts = (0..6).map(single).chain([NONE, ALL]);
+    let turbulent = (NONE.0, 1);
+    let counts = (0..LISTS.len()).map(single).chain([turbulent, NONE, ALL]);
     let mut shapes = Vec::new();
     for counts in counts {
         for plant in PLANTS {

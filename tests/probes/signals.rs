@@ -2,76 +2,52 @@
 
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};
+use super::memory::moment;
 use super::numbers::Numbers;
 use super::tracked::Tracked;
-use super::world::{Flies, World, episode};
+use super::world::{Flies, Scene, World, episode};
+use crate::backend::gpu::lists::{switches, waves};
 use crate::backend::gpu::words::NEVER;
 use crate::model::lanes::{Lane, MAX_WIDTH};
+use crate::model::memory::Actuator;
 use crate::model::metric::Sample;
-use crate::model::signal::{Signals, Switch};
+use crate::model::signal::{Signals, Wave, turned};
 
-/// All switches of a channel, in the order of their words.
-pub(super) fn switches<const NC: usize>(
+/// The first step after `step` at which a switch of a channel turns.
+pub(super) fn next_change<const NC: usize>(
     signals: &Signals<Tracked, NC>,
     c: usize,
-) -> Vec<Switch<Tracked>> {
-    let plain = [
-        &signals.losses,
-        &signals.command_biases,
-        &signals.sensor_biases,
-    ];
-    let plain = plain.into_iter().flatten().map(|switch| switch[c]);
-    let noises = signals.noises.iter().map(|noise| noise.switch[c]);
-    let squares = signals.squares.iter().map(|square| square[c].switch);
-    plain.chain(noises).chain(squares).collect()
-}
-
-/// The first of some steps that comes after a step.
-pub(super) fn next(steps: impl Iterator<Item = Tracked>, step: u32) -> u32 {
-    steps
-        .filter(|onset| onset.value.is_finite())
-        .map(|onset| onset.value as u32)
-        .filter(|&onset| onset > step)
+    step: u32,
+) -> u32 {
+    let switches = switches(signals, c).into_iter().flatten();
+    switches
+        .flat_map(|switch| [switch.onset, switch.end])
+        .filter(|turn| turn.value.is_finite())
+        .map(|turn| turn.value as u32)
+        .filter(|&turn| turn > step)
         .min()
         .unwrap_or(NEVER)
 }
 
-pub(super) fn switched<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
-    lab: &Lab,
-    world: &World<P, NC, NS, NX>,
-) -> Compared {
-    let body = "
-        load();
-        for (var k = 0u; k < N_SWITCHES; k++) { answer_number(k, switch_at(k, step)); }
-        answer(N_SWITCHES, next_onset(step));";
-    let count = world.shape.words().named();
-    let count = count
-        .iter()
-        .find(|(name, _)| *name == "N_SWITCHES")
-        .unwrap()
-        .1;
-    world.check(lab, body, count + 1, nothing, |scene| {
-        let step = scene.step;
-        scene.each(|scene, a, c| {
-            let switches = switches(&scene.group.agents[a].signals, c);
-            for switch in &switches {
-                let value = switch.at(Tracked::number(f64::from(step)), Tracked::exact(0.0));
-                scene.answer_number(a, c, value);
-            }
-            let next = next(switches.iter().map(|switch| switch.onset), step);
-            scene.answer(a, c, Expected::Bits(next));
-        });
-    })
+/// All waves, as `lists::waves` lists them.
+fn waves_mut<const NC: usize>(
+    signals: &mut Signals<Tracked, NC>,
+) -> impl Iterator<Item = &mut [Wave<Tracked>; NC]> {
+    let lists = [
+        &mut signals.sines,
+        &mut signals.gusts,
+        &mut signals.command_waves,
+        &mut signals.sensor_waves,
+        &mut signals.squares,
+    ];
+    lists.into_iter().flatten()
 }
 
 /// Moves the phases of an agent's signals to the start of a step, half step by half step.
 pub(super) fn begin<const NC: usize>(signals: &mut Signals<Tracked, NC>, step: u32) {
-    for _ in 0..2 * step {
-        for sine in signals.sines.as_flattened_mut() {
-            sine.phase = Tracked::turns_add(sine.phase, sine.advance);
-        }
-        for square in signals.squares.as_flattened_mut() {
-            square.phase = Tracked::turns_add(square.phase, square.advance);
+    for wave in waves_mut(signals).flatten() {
+        for _ in 0..2 * step {
+            wave.phase = Tracked::turns_add(wave.phase, wave.advance);
         }
     }
 }
@@ -85,115 +61,168 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         signals_begin(step);
         answer_number(0u, constant);
         answer_number(1u, ground);
-        var at = 2u;
-        for (var k = 0u; k < N_SINES; k++) {
-            answer_number(at, sines[k].amplitude);
-            answer(at + 1u, sines[k].advance);
-            at += 2u;
-        }
-        for (var k = 0u; k < N_SQUARES; k++) {
-            answer_number(at, squares[k].inverse_smoothing);
-            answer(at + 1u, squares[k].advance);
-            at += 2u;
+        answer(2u, select(0u, 1u, signals_ticks(step)));
+        for (var k = 0u; k < N_WAVES; k++) {
+            answer_number(3u + 2u * k, waves[k].inverse_smoothing);
+            answer(4u + 2u * k, waves[k].advance);
         }";
-    let counts = world.shape.counts;
-    let answers = 2 + 2 * (counts.sines + counts.squares);
-    world.check(lab, body, answers, nothing, |scene| {
+    let [_, count, _] = world.shape.lists.groups();
+    world.check(lab, body, 3 + 2 * count, nothing, |scene| {
         let step = scene.step;
         for agent in &mut scene.group.agents {
             begin(&mut agent.signals, step);
-            for square in agent.signals.squares.as_flattened_mut() {
-                square.held = Tracked::exact(0.0);
+            agent.signals.actuator = Actuator::sound();
+            for wave in waves_mut(&mut agent.signals).flatten() {
+                wave.held = Tracked::exact(0.0);
             }
         }
         scene.each(|scene, a, c| {
             let signals = scene.group.agents[a].signals.clone();
             scene.answer_number(a, c, signals.constant[c]);
             scene.answer_number(a, c, signals.ground[c]);
-            for sine in &signals.sines {
-                scene.answer_number(a, c, sine[c].amplitude);
-                scene.answer(a, c, Expected::Bits(sine[c].advance));
-            }
-            for square in &signals.squares {
-                scene.answer_number(a, c, square[c].inverse_smoothing);
-                scene.answer(a, c, Expected::Bits(square[c].advance));
+            scene.answer(a, c, Expected::Bits(u32::from(signals.ticks(step))));
+            for wave in waves(&signals) {
+                scene.answer_number(a, c, wave[c].inverse_smoothing);
+                scene.answer(a, c, Expected::Bits(wave[c].advance));
             }
         });
     })
+}
+
+/// The episode of a scene in every lane.
+pub(super) fn episodes(scene: usize) -> [u32; MAX_WIDTH] {
+    [episode(scene); MAX_WIDTH]
+}
+
+/// The sum of the team's last commands, which each channel is given as its first input.
+fn team<const NC: usize, const NS: usize, const NX: usize>(
+    scene: &Scene<NC, NS, NX>,
+    agent: usize,
+) -> [Tracked; NC] {
+    std::array::from_fn(|c| scene.number(agent, c, 0))
 }
 
 pub(super) fn held<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    world.check(lab, "load(); signals_hold(step);", 0, nothing, |scene| {
+    let body = "load(); signals_hold(step, number(0u));";
+    world.check(lab, body, 0, sized([3.0]), |scene| {
         let (step, episodes) = (scene.step, episodes(scene.index));
-        for agent in &mut scene.group.agents {
-            agent.signals.hold(step, world.seed, &episodes);
+        for a in 0..world.shape.team {
+            let team = team(scene, a);
+            let signals = &mut scene.group.agents[a].signals;
+            signals.hold(step, &team, world.seed, &episodes);
         }
     })
 }
 
-/// The episode of a scene in every lane.
-fn episodes(scene: usize) -> [u32; MAX_WIDTH] {
-    [episode(scene); MAX_WIDTH]
+/// What is held of the commands alone, then what is held of the measurements, in two probes.
+pub(super) fn held_apart<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    lab: &Lab,
+    world: &World<P, NC, NS, NX>,
+) -> Compared {
+    let body = "load(); hold_command(step, number(0u));";
+    let mut all = world.check(lab, body, 0, sized([3.0]), |scene| {
+        let (step, episodes) = (scene.step, episodes(scene.index));
+        scene.each(|scene, a, c| {
+            let team = scene.number(a, c, 0);
+            let signals = &mut scene.group.agents[a].signals;
+            signals.hold_command(c, step, team, world.seed, &episodes);
+        });
+    });
+    let body = "load(); hold_sensor(step);";
+    all.add(world.check(lab, body, 0, nothing, |scene| {
+        let (step, episodes) = (scene.step, episodes(scene.index));
+        scene.each(|scene, a, c| {
+            let signals = &mut scene.group.agents[a].signals;
+            signals.hold_sensor(c, step, world.seed, &episodes);
+        });
+    }));
+    all
 }
 
 pub(super) fn evaluated<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    // The first stage of a step does not move on.
-    let body = "load(); signals_evaluate(stage != 0u);";
+    let body = "load(); signals_evaluate((stage + 1u) / 2u);";
     world.check(lab, body, 0, nothing, |scene| {
+        let moment = moment(scene.stage);
         for agent in &mut scene.group.agents {
-            if scene.stage == 0 {
-                agent.signals.evaluate::<false>();
-            } else {
-                agent.signals.evaluate::<true>();
-            }
+            agent.signals.evaluate(moment);
         }
     })
 }
 
-pub(super) fn noise<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
-    lab: &Lab,
-    world: &World<P, NC, NS, NX>,
-) -> Compared {
-    let body = "load(); for (var k = 0u; k < N_NOISES; k++) { noise_draw(k, step + k); }";
-    world.check(lab, body, 0, nothing, |scene| {
-        let (step, episodes) = (scene.step, episodes(scene.index));
-        for agent in &mut scene.group.agents {
-            for (index, noise) in (step..).zip(&mut agent.signals.noises) {
-                for c in 0..NC {
-                    noise.draw(c, index, world.seed, &episodes);
-                }
-            }
-        }
-    })
-}
-
-pub(super) fn pairs<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+pub(super) fn turns<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
     let body = "
         load();
-        noise_pair(SAMPLES + 2u, asked(0u), asked(1u));";
-    let inputs = |n: &mut Numbers, _: usize| {
-        vec![
-            n.one_of(&[0, u32::MAX, 0x8000_0000, 0x1234_5678]) ^ (n.word() >> 12),
-            n.word(),
-        ]
-    };
-    world.check(lab, body, 0, inputs, |scene| {
+        for (var k = 0u; k < N_WAVES; k++) { answer_number(k, wave_turned(k, stage % 2u == 1u)); }";
+    let [_, count, _] = world.shape.lists.groups();
+    world.check(lab, body, count, nothing, |scene| {
+        let advance = scene.stage % 2 == 1;
         scene.each(|scene, a, c| {
-            let (word, turn) = (scene.word(a, c, 0), scene.word(a, c, 1));
-            let radius = (Tracked::unit_from_words(&[word]).ln() * Tracked::exact(-2.0)).sqrt();
-            let quarter = Tracked::turns(&[0.25]);
-            let samples = &mut scene.group.agents[a].signals.noises[0].samples[c];
-            samples[2] = radius * Tracked::turns_sin(turn);
-            samples[3] = radius * Tracked::turns_sin(Tracked::turns_add(turn, quarter));
+            let signals = &mut scene.group.agents[a].signals;
+            let sines = waves_mut(signals).map(|wave| turned(&mut wave[c], advance));
+            for sine in sines.collect::<Vec<_>>() {
+                scene.answer_number(a, c, sine);
+            }
+        });
+    })
+}
+
+/// What becomes of a command on its way, beside its gain and bias.
+pub(super) fn commands<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    lab: &Lab,
+    world: &World<P, NC, NS, NX>,
+) -> Compared {
+    let body = "load(); recall_command((stage + 1u) / 2u); limit_rate((stage + 1u) / 2u);";
+    world.check(lab, body, 0, nothing, |scene| {
+        let moment = moment(scene.stage);
+        for agent in &mut scene.group.agents {
+            agent.signals.recall_command(moment);
+            agent.signals.limit_rate(moment);
+        }
+    })
+}
+
+pub(super) fn measured<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    lab: &Lab,
+    world: &World<P, NC, NS, NX>,
+) -> Compared {
+    let body = "
+        load();
+        let seen = measure((stage + 1u) / 2u, vec2(number(0u), number(1u)));
+        answer_number(0u, seen.x);
+        answer_number(1u, seen.y);";
+    world.check(lab, body, 2, sized([1.0, 2.0]), |scene| {
+        let moment = moment(scene.stage);
+        scene.each(|scene, a, c| {
+            let motion = scene.numbers(a, c);
+            for number in scene.group.agents[a].signals.measure(c, moment, motion) {
+                scene.answer_number(a, c, number);
+            }
+        });
+    })
+}
+
+pub(super) fn remembered<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
+    lab: &Lab,
+    world: &World<P, NC, NS, NX>,
+) -> Compared {
+    let body = "
+        load();
+        signals_remember(step, number(0u), vec2(number(1u), number(2u)));";
+    world.check(lab, body, 0, sized([3.0, 1.0, 2.0]), |scene| {
+        let step = scene.step;
+        scene.each(|scene, a, c| {
+            let [wanted, position, velocity] = scene.numbers(a, c);
+            let signals = &mut scene.group.agents[a].signals;
+            signals.remember(c, step, wanted, [position, velocity]);
         });
     })
 }

@@ -32,6 +32,12 @@ const SINE: f64 = 6.0;
 /// and loses the second, as a software Vulkan was seen to do: a quarter of an ulp.
 const REDUCED: f64 = 2.0;
 
+/// Where the error of a stored single is: in bits of the double that no single has, and too low to round it to another. What
+/// is stored is read again, as by a ring of samples.
+const LOW_BITS: u64 = (1 << 28) - 1;
+/// What tells these bits from those of a double that was never a single.
+const MARK: u64 = 0xa5c3;
+
 /// An error of some ulp of a value.
 fn ulps(count: f64, value: f32) -> f64 {
     count * f64::from(f32::EPSILON) * f64::from(value.abs()) + f64::from(f32::MIN_POSITIVE)
@@ -131,10 +137,22 @@ impl Lane for Tracked {
         Self::exact(value)
     }
     fn load(values: &[f64]) -> Self {
-        Self::exact(f32::load(values))
+        let low = values[0].to_bits() & LOW_BITS;
+        let error = if low >> 12 == MARK {
+            f64::from(f32::from_bits((low as u32 & 0xfff) << 19))
+        } else {
+            0.0
+        };
+        Self::new(f32::load(values), error)
     }
     fn store(self, out: &mut [f64]) {
         self.value.store(out);
+        if self.error > 0.0 {
+            // Rounded up: sign, exponent and four bits of a single are in its first 13.
+            let error = ((self.error as f32).to_bits() >> 19) + 1;
+            let bits = out[0].to_bits() | (MARK << 12) | u64::from(error.min(0xff0));
+            out[0] = f64::from_bits(bits);
+        }
     }
     #[inline(never)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {

@@ -1,7 +1,8 @@
 //! Which function is whose twin. Without a device: every function of the shaders has a probe, and every function of the model
 //! files that they mirror has a twin or a reason to have none.
 
-use super::{layout, probes, shapes};
+use super::table::probes;
+use super::{layout, shapes};
 use crate::backend::gpu::group::ENTRIES;
 use std::collections::BTreeSet;
 
@@ -125,13 +126,51 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
+        "switch",
+        include_str!("../../src/model/switch.rs"),
+        &[
+            ("weight", "switch_weight"),
+            ("at", "switch_at"),
+            ("at", "burst_at"),
+        ],
+    ),
+    (
+        "memory",
+        include_str!("../../src/model/memory.rs"),
+        &[
+            ("command", "actuator_command"),
+            ("hold", "ring_hold"),
+            ("recall", "ring_recall"),
+            ("or_past", "ring_or_past"),
+            ("record", "ring_record"),
+            ("read", "ring_read"),
+            ("place", "ring_place"),
+        ],
+    ),
+    (
+        "noise",
+        include_str!("../../src/model/noise.rs"),
+        &[
+            ("normal_pair", "normal_pair"),
+            ("draw", "noise_draw"),
+            ("force", "turbulence_force"),
+            ("advance", "turbulence_advance"),
+        ],
+    ),
+    (
         "signal",
         include_str!("../../src/model/signal.rs"),
         &[
-            ("at", "switch_at"),
+            ("ticks", "signals_ticks"),
             ("hold", "signals_hold"),
+            ("hold_command", "hold_command"),
+            ("hold_sensor", "hold_sensor"),
             ("evaluate", "signals_evaluate"),
-            ("draw", "noise_draw"),
+            ("recall_command", "recall_command"),
+            ("limit_rate", "limit_rate"),
+            ("measure", "measure"),
+            ("remember", "signals_remember"),
+            ("turned", "wave_turned"),
         ],
     ),
     (
@@ -144,11 +183,24 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
+        "agent",
+        include_str!("../../src/model/agent.rs"),
+        &[
+            ("motion", "agent_motion"),
+            ("feedback", "agent_feedback"),
+            ("respond", "agent_respond"),
+            ("distortion", "agent_distortion"),
+            ("remember", "agent_remember"),
+            ("observe", "agent_observe"),
+        ],
+    ),
+    (
         "group",
         include_str!("../../src/model/group.rs"),
         &[
-            ("respond", "agent_respond"),
-            ("observe", "agent_observe"),
+            ("team_commands", "team_commands"),
+            ("finite", "finite"),
+            ("end_step", "group_end_step"),
             ("begin_step", "group_begin_step"),
             ("hold", "group_hold"),
             ("team_sum", "team_sum"),
@@ -214,7 +266,14 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         ],
         "the start's and the host's",
     ),
-    (&["motion"], "two lines of agent_respond"),
+    (
+        &["always", "sound", "onset_step", "words_of"],
+        "how draws become words and constants",
+    ),
+    (
+        &["limits_rate", "distorts", "remembers", "is_restless", "of"],
+        "constants of the shader",
+    ),
     (
         &["from", "twists", "forward_dynamics", "leg_rows"],
         "the host's choice of the shader's constants",
@@ -223,7 +282,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         &["scaled", "less", "remainder", "plus"],
         "operators of vectors",
     ),
-    (&["evaluate_ahead"], "an invocation has one agent"),
+    (&["evaluate"], "an invocation has one agent"),
 ];
 
 /// Functions of the shaders without a twin in these files: the probe says what they must do.
@@ -242,11 +301,15 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
         ],
         "fields of ChannelGains",
     ),
-    (&["next_onset"], "the model's list of changes"),
+    (&["next_change"], "the model's list of changes"),
+    (&["switch_value", "turbulence_filter"], "fields"),
+    (&["own_member"], "the address that the host gives a channel"),
     (&["signals_begin"], "as many turns_add as half steps"),
-    (&["noise_pair"], "half of draw"),
     (&["add_to_total"], "a line of flush"),
-    (&["slot", "seen", "publish", "reference_at"], "indexing"),
+    (
+        &["slot", "command_slot", "seen", "publish", "reference_at"],
+        "indexing",
+    ),
     (
         &["channel_plant", "publish_channel", "leg_seen"],
         "an invocation has one channel",

@@ -2,29 +2,25 @@
 //! sides of the border.
 
 use super::harness::{Case, Compared, Expected, Job, Lab, Left};
-use super::image::{FAILED, FIXED_IMAGE, image, stored};
+use super::image::{FAILED, image, image_words, stored};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use crate::backend::gpu::setting::{GainsWords, PlantWords, SettingHead};
 use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::{self, NEVER, Span};
-use crate::draw::member;
-use crate::model::condition::Condition;
+use crate::model::agent::Setting;
 use crate::model::controller::ChannelGains;
 use crate::model::episode::PlantKind;
-use crate::model::group::{Agent, Group, Setting};
+use crate::model::group::Group;
 use crate::model::integrator::Step;
-use crate::model::lanes::{Lane, MAX_WIDTH};
-use crate::model::metric::{Limits, Sums};
+use crate::model::lanes::MAX_WIDTH;
+use crate::model::metric::Limits;
 use crate::model::plant::{Plant, ReferenceRow};
 use crate::model::rng::key;
-use crate::model::signal::{Noise, Signals, Sine, Square, Switch};
 
 /// The fewest invocations of a probe.
 const CASES: usize = 400;
 /// Purposes of random numbers.
-const CONDITION: u32 = 1;
-const STATE: u32 = 2;
 const SETTING: u32 = 3;
 const INPUT: u32 = 4;
 
@@ -65,7 +61,7 @@ pub(super) struct Scene<const NC: usize, const NS: usize, const NX: usize> {
     pub(super) answers: Vec<[Vec<Expected>; NC]>,
     /// When the held signals change next, if the probe tells.
     pub(super) next_change: Vec<[Expected; NC]>,
-    /// Whether the whole state was left in the buffer, and not the sums and samples alone.
+    /// Whether the whole state was left in the buffer, and not only what is always there.
     pub(super) kept: bool,
 }
 
@@ -158,7 +154,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             plant: self.plant,
             gains: self.gains,
             limits: self.limits,
-            coupled: self.shape.coupled,
+            coupling: self.shape.coupling,
+            measured_integral: self.shape.measured_integral,
             step_s: self.step_s,
             settle_step: self.settle_step,
             seed: self.seed,
@@ -188,143 +185,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
     }
 
     /// The step at which a scene is.
-    fn step(scene: usize) -> u32 {
+    pub(super) fn step(scene: usize) -> u32 {
         scene as u32 * 7 % 1000
-    }
-
-    /// What an agent meets: signals of every kind that the shape has, switching around the scene's step and in its span.
-    pub(super) fn condition<L: Lane<Real = f32>>(
-        &self,
-        scene: usize,
-        agent: usize,
-    ) -> Condition<L, NC> {
-        let mut numbers = Numbers::new(CONDITION, scene, agent);
-        let counts = self.shape.counts;
-        let step = Self::step(scene);
-        let onsets = [
-            0.0,
-            f64::from(step),
-            f64::from(step + 1),
-            254.0,
-            256.0,
-            f64::INFINITY,
-        ];
-        let mut signals = Signals::none();
-        let some = &mut |low, high| L::number(numbers.between(low, high));
-        signals.constant = std::array::from_fn(|_| some(-0.5, 0.5));
-        signals.ground = std::array::from_fn(|_| some(-1.0, 1.0));
-        let switches = |numbers: &mut Numbers, low: f64, high: f64| -> [Switch<L>; NC] {
-            std::array::from_fn(|_| Switch {
-                onset: L::number(numbers.one_of(&onsets)),
-                value: L::number(numbers.between(low, high)),
-            })
-        };
-        let numbers = &mut numbers;
-        for _ in 0..counts.losses {
-            signals.losses.push(switches(numbers, 0.0, 0.9));
-        }
-        for _ in 0..counts.command_biases {
-            signals.command_biases.push(switches(numbers, -0.5, 0.5));
-        }
-        for _ in 0..counts.sensor_biases {
-            signals.sensor_biases.push(switches(numbers, -0.5, 0.5));
-        }
-        for &entry in &self.shape.noise_entries {
-            signals.noises.push(Noise {
-                entry,
-                members: std::array::from_fn(|c| member(agent, self.first + c)),
-                switch: switches(numbers, 0.1, 0.5),
-                samples: std::array::from_fn(|_| {
-                    std::array::from_fn(|_| L::number(numbers.around(2.0)))
-                }),
-            });
-        }
-        for _ in 0..counts.squares {
-            let switch = switches(numbers, -1.0, 1.0);
-            signals.squares.push(std::array::from_fn(|c| Square {
-                switch: switch[c],
-                inverse_smoothing: L::number(numbers.between(1.0, 50.0)),
-                phase: L::turns_from_words(&[numbers.word()]),
-                advance: L::turns_from_words(&[numbers.word()]),
-                held: L::number(numbers.around(1.0)),
-            }));
-        }
-        for _ in 0..counts.sines {
-            signals.sines.push(std::array::from_fn(|_| Sine {
-                amplitude: L::number(numbers.around(1.0)),
-                phase: L::turns_from_words(&[numbers.word()]),
-                advance: L::turns_from_words(&[numbers.word()]),
-            }));
-        }
-        Condition {
-            initial: std::array::from_fn(|_| {
-                std::array::from_fn(|_| L::number(numbers.around(1.0)))
-            }),
-            signals,
-            inverse_inertia: std::array::from_fn(|_| L::number(numbers.between(0.3, 3.0))),
-            kappa: L::number(numbers.around(0.1)),
-            first_fault: L::number(numbers.one_of(&onsets)),
-        }
-    }
-
-    /// An agent in a random state.
-    fn agent(&self, scene: usize, agent: usize) -> Agent<Tracked, NC, NS, NX> {
-        let mut numbers = Numbers::new(STATE, scene, agent);
-        let mut some = |size: f64| Tracked::number(numbers.around(size));
-        let mut made = Agent::new(
-            std::array::from_fn(|_| std::array::from_fn(|_| some(1.0))),
-            self.condition(scene, agent),
-        );
-        for channel in &mut made.channels {
-            channel.point = channel.point.map(|_| some(1.0));
-            channel.sum = channel.sum.map(|_| some(1.0));
-        }
-        let extra = &mut made.extra;
-        for states in [&mut extra.start, &mut extra.point, &mut extra.sum] {
-            *states = states.map(|_| some(0.8));
-        }
-        let signals = &mut made.signals;
-        for held in [
-            &mut signals.held_sensor,
-            &mut signals.command_gain,
-            &mut signals.command_bias,
-            &mut signals.disturbance,
-            &mut signals.sensor_fault,
-        ] {
-            *held = held.map(|_| some(1.0));
-        }
-        for metrics in &mut made.metrics {
-            for sums in [&mut metrics.recent, &mut metrics.total] {
-                *sums = Sums {
-                    square: some(9.0).abs(),
-                    absolute: some(9.0).abs(),
-                    effort: some(9.0).abs(),
-                    actuator_fault: some(9.0).abs(),
-                    sensor_fault: some(9.0).abs(),
-                    limited: some(200.0).abs().floor(),
-                };
-            }
-            metrics.largest = some(1.0).abs();
-            metrics.largest_command = some(1.0).abs();
-            metrics.outside = some(250.0).floor().max(Tracked::exact(-1.0));
-            metrics.outside_before_fault = some(250.0).floor().max(Tracked::exact(-1.0));
-        }
-        made.failed = Tracked::number(numbers.one_of(&[0.0, 100.0, 900.0, f64::INFINITY]));
-        if self.lost && scene.is_multiple_of(2) {
-            let place = [
-                1e30,
-                -1e30,
-                1e15,
-                f64::INFINITY,
-                f64::NEG_INFINITY,
-                f64::NAN,
-            ];
-            for channel in &mut made.channels {
-                channel.start[1] = Tracked::number(numbers.one_of(&place));
-                channel.point[1] = Tracked::number(numbers.one_of(&place));
-            }
-        }
-        made
     }
 
     fn scene(&self, scene: usize) -> Group<Tracked, NC, NS, NX> {
@@ -346,8 +208,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
     ) -> Compared {
         let shape = &self.shape;
         let blocks = CASES.div_ceil(shape.workgroup()).next_multiple_of(4);
-        let counts = shape.counts;
-        let image_words = FIXED_IMAGE + counts.sines + 2 * counts.squares;
+        let image_words = image_words(&shape.lists);
         let mut scenes: Vec<Scene<NC, NS, NX>> = (0..blocks * shape.lanes)
             .map(|scene| Scene {
                 group: self.scene(scene),
@@ -373,10 +234,10 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
                     let before = image(made, channel, Expected::Bits(NEVER));
                     let asked = &scene.asked[agent][channel];
                     cases[self.case(index, channel, agent)] = Case {
-                        drawn: words::drawn(episode(index), &condition, channel).collect(),
-                        stored: stored(made, channel)
+                        drawn: words::drawn(episode(index), &condition, channel),
+                        stored: stored(made, channel, &shape.lists)
                             .into_iter()
-                            .map(Expected::word)
+                            .map(|(word, _)| word.word())
                             .collect(),
                         taken: before
                             .into_iter()
@@ -439,12 +300,14 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             for (k, &expected) in answers.iter().enumerate() {
                 compared.take(expected, left.given[state.len() + k], || at("result", k));
             }
-            let kept = stored(made, channel);
-            assert_eq!(kept.len(), before.len(), "all that is stored");
-            let sums_and_samples =
-                |k: usize| (11..17).contains(&k) || k >= 17 + self.shape.states();
-            for (k, expected) in kept.into_iter().enumerate() {
-                let expected = if scene.kept || sums_and_samples(k) {
+            let kept = stored(made, channel, &self.shape.lists);
+            assert_eq!(
+                kept.len(),
+                self.shape.words().stored(),
+                "all that is stored"
+            );
+            for (k, (expected, always)) in kept.into_iter().enumerate() {
+                let expected = if scene.kept || always {
                     expected
                 } else {
                     Expected::Bits(before[k])

@@ -2,7 +2,7 @@
 
 use crate::common::{altered, campaign, fly, shipped_campaigns, tables};
 use urts_mc::backend::cpu::Precision;
-use urts_mc::campaign::{Campaign, Distribution};
+use urts_mc::campaign::{Campaign, Distribution, DisturbanceKind, FaultKind, FaultTarget};
 use urts_mc::comparison::{compare, summarise};
 use urts_mc::gains::GainSet;
 use urts_mc::tables::Status;
@@ -112,7 +112,7 @@ fn uav_physical_shows_failure_rates_with_intervals() {
     for controller in ["ftc", "pid", "pid-tuned"] {
         let row = rows
             .iter()
-            .find(|row| row.failures.controller == controller && row.failures.stratum == "all")
+            .find(|row| row.failures.controller == controller && &*row.failures.stratum == "all")
             .unwrap();
         let failures = &row.failures;
         println!(
@@ -122,9 +122,8 @@ fn uav_physical_shows_failure_rates_with_intervals() {
             failures.wilson
         );
         assert_eq!(failures.n, 128);
-        assert!(
-            failures.wilson.lower <= failures.rate() && failures.rate() <= failures.wilson.upper
-        );
+        let wilson = failures.wilson.unwrap();
+        assert!(wilson.lower <= failures.rate() && failures.rate() <= wilson.upper);
         assert!(
             failures.rate() < 0.1,
             "{controller} fails in {} of {}",
@@ -300,5 +299,40 @@ fn a_perfect_pair_of_channels_is_a_tie_and_no_nan() {
             let log_ratio = ratio.log_ratio.unwrap();
             assert!(!log_ratio.value.is_nan() && !ratio.win_rate.unwrap().value.is_nan());
         }
+    }
+}
+
+#[test]
+fn every_kind_of_fault_and_disturbance_has_a_line_in_a_shipped_campaign() {
+    let all: Vec<Campaign> = shipped_campaigns()
+        .iter()
+        .map(|path| Campaign::load(path).unwrap())
+        .collect();
+    for kind in FaultKind::ALL {
+        for target in [
+            FaultTarget::Actuator,
+            FaultTarget::Sensor,
+            FaultTarget::Network,
+            FaultTarget::Plant,
+        ] {
+            let mut faults = all.iter().flat_map(|campaign| &campaign.faults);
+            assert!(
+                !kind.strikes(target)
+                    || faults.any(|fault| fault.kind == kind && fault.target == target),
+                "{} {}",
+                target.name(),
+                kind.name()
+            );
+        }
+    }
+    for kind in [
+        DisturbanceKind::Sine,
+        DisturbanceKind::Constant,
+        DisturbanceKind::Gust1Cosine,
+        DisturbanceKind::Dryden,
+        DisturbanceKind::GroundReaction,
+    ] {
+        let mut disturbances = all.iter().flat_map(|campaign| &campaign.disturbances);
+        assert!(disturbances.any(|one| one.kind == kind), "{}", kind.name());
     }
 }

@@ -3,6 +3,7 @@
 mod backends;
 mod bipeds;
 mod campaign_files;
+mod campaign_plans;
 mod gains;
 mod output;
 mod results;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `agreement` | the comparison of flights with the CPU's |
 //! | `parity`, `bipeds` | every kind of campaign against double and single precision on the CPU |
+//! | `faults` | all faults and disturbances at once |
 //! | `mutations` | changed shaders and gains, each of which that comparison must notice |
 //! | `determinism` | the same bits for any batch, span of steps, order and company |
 //! | `failures` | lost devices, shaders that do not compile, too little memory, too large teams |
@@ -14,6 +15,7 @@ mod agreement;
 mod bipeds;
 mod determinism;
 mod failures;
+mod faults;
 mod mutations;
 mod parity;
 

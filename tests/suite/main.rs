@@ -8,11 +8,17 @@
 //! | `statistics` | estimators against published values, and their coverage |
 //! | `sampling` | designs: balance, independence, what they gain and allow |
 //! | `ranking` | what the conditions of an episode do to its outcome |
+//! | `comparison` | what is said of each stratum, against numbers worked out by hand |
+//! | `designs` | sampling designs in campaigns: balance, replicates, what they leave out |
+//! | `stop` | early stop: its level, and the same end whatever flies |
+//! | `strata` | names of faults, and which episodes meet which |
 //! | `path` | the waypoint reference |
 //! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
 //! | `leg` | the fast dynamics of a leg on every lane type |
 //! | `walk` | the walking reference against an independent implementation |
 //! | `biped` | robots in the episode loop: against independent trajectories and formulas, at their limits, on every lane type |
+//! | `faults` | every kind of fault and disturbance, and every option of the loop, against its definition |
+//! | `attenuation` | inequality (24) of the paper on flights, against plain formulas |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
 //! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
 //! | `flight` | flights whose GPU fails |
@@ -37,9 +43,13 @@
 mod cli;
 mod common;
 
+mod attenuation;
 mod biped;
 mod campaigns;
+mod comparison;
+mod designs;
 mod determinism;
+mod faults;
 mod flight;
 mod gpu;
 mod lanes;
@@ -52,5 +62,7 @@ mod robot;
 mod sampling;
 mod scenarios;
 mod statistics;
+mod stop;
+mod strata;
 mod synthesis;
 mod walk;

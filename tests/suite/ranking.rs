@@ -21,7 +21,7 @@ fn sure<'a>(
 ) -> impl Iterator<Item = &'a RankedCondition> {
     ranking.iter().filter(move |ranked| {
         let target = &ranked.target;
-        target.kind == kind && target.controller == controller && ranked.p_holm <= 0.05
+        target.kind == kind && target.controller == controller && ranked.p_holm.unwrap() <= 0.05
     })
 }
 
@@ -46,7 +46,12 @@ fn what_drives_the_error_is_found_and_what_does_not_is_not() {
     let phases = ranking
         .iter()
         .filter(|ranked| ranked.condition.contains("phase"));
-    assert!(phases.filter(|ranked| ranked.p_holm <= 0.05).count() <= 1);
+    assert!(
+        phases
+            .filter(|ranked| ranked.p_holm.unwrap() <= 0.05)
+            .count()
+            <= 1
+    );
     // What is the same in all episodes is not ranked.
     assert!(
         ranking
@@ -56,7 +61,7 @@ fn what_drives_the_error_is_found_and_what_does_not_is_not() {
     assert!(
         ranking
             .iter()
-            .all(|ranked| ranked.effect.n <= 192 && ranked.p_holm <= 1.0)
+            .all(|ranked| ranked.effect.n <= 192 && ranked.p_holm.unwrap() <= 1.0)
     );
 }
 
@@ -74,7 +79,7 @@ fn outcomes_of_other_episodes_have_no_cause_in_these() {
     assert!(
         ranking
             .iter()
-            .filter(|ranked| ranked.p_holm <= 0.05)
+            .filter(|ranked| ranked.p_holm.unwrap() <= 0.05)
             .count()
             <= 3
     );

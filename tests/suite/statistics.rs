@@ -9,6 +9,7 @@ use urts_mc::statistics::{
 };
 
 mod coverage;
+mod difference;
 mod effect;
 mod effect_level;
 mod level;

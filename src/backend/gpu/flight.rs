@@ -403,7 +403,7 @@ impl<'g> GpuFlyer<'g> {
         span: Range<u32>,
         sample: u32,
     ) -> Result<(), GpuError> {
-        if matches!(entry, Entry::Advance | Entry::Show) {
+        if matches!(entry, Entry::Start | Entry::Advance | Entry::Show) {
             self.cover(&span)?;
         }
         let stride = span_stride(self.gpu);

@@ -4,8 +4,9 @@ use super::device::Gpu;
 use super::setting::leg;
 use super::shader::Shape;
 use super::{GpuError, words};
-use crate::campaign::{Agent, Campaign, ObserverStart};
+use crate::campaign::{Agent, Campaign, IntegralKind, ObserverStart};
 use crate::draw::draw;
+use crate::model::agent::Coupling;
 use crate::model::episode::{Part, PlantKind};
 
 /// Invocations that a workgroup should have: several warps, and several workgroups on each multiprocessor.
@@ -83,10 +84,10 @@ pub(super) fn shape(
 ) -> Result<Shape, GpuError> {
     let first = part.channels.start;
     let episode = draw(campaign, 0);
-    let (counts, noise_entries) = match part.plant {
-        PlantKind::Axis => words::signals::<1>(campaign, first, &episode),
-        PlantKind::Attitude => words::signals::<3>(campaign, first, &episode),
-        PlantKind::Thrust | PlantKind::Leg => words::signals::<6>(campaign, first, &episode),
+    let lists = match part.plant {
+        PlantKind::Axis => words::lists::<1>(campaign, first, &episode),
+        PlantKind::Attitude => words::lists::<3>(campaign, first, &episode),
+        PlantKind::Thrust | PlantKind::Leg => words::lists::<6>(campaign, first, &episode),
     };
     let limits = gpu.limits();
     let mut shape = Shape {
@@ -101,10 +102,10 @@ pub(super) fn shape(
         team: campaign.team,
         lanes: MAX_LANES,
         ftc,
-        coupled: campaign.is_coupled(),
+        coupling: Coupling::of(campaign),
+        measured_integral: campaign.control.integral == IntegralKind::Sensor,
         observer_measured: campaign.initial.observer == ObserverStart::Measured,
-        counts,
-        noise_entries,
+        lists,
     };
     // The same for every batch: another shape is another text, which a driver might compile to other roundings.
     while shape.lanes > 1 && shape.workgroup() > WORKGROUP {

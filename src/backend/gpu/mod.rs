@@ -11,6 +11,7 @@ mod buffers;
 mod device;
 mod flight;
 mod group;
+pub(crate) mod lists;
 pub(crate) mod setting;
 pub(crate) mod shader;
 pub(crate) mod words;

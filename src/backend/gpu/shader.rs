@@ -1,9 +1,11 @@
 //! The WGSL text of a group of channels: the files of `shaders/`, joined, under constants that come from here and from
 //! `src/model`, so that every number and size exists once.
 
-use super::words::{Counts, OUTCOME_WORDS, SHOWN_WORDS, Words};
+use super::lists::Lists;
+use super::words::{OUTCOME_WORDS, SHOWN_WORDS, Words};
 use crate::campaign::FIRST_ATTITUDE;
 use crate::draw::MEMBERS_PER_AGENT;
+use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::PlantKind;
 use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
@@ -29,7 +31,10 @@ const BIPED: [&str; 2] = [
     include_str!("../../../shaders/plant_biped.wgsl"),
 ];
 /// The files that build on a plant.
-const ABOVE: [&str; 4] = [
+const ABOVE: [&str; 7] = [
+    include_str!("../../../shaders/switch.wgsl"),
+    include_str!("../../../shaders/memory.wgsl"),
+    include_str!("../../../shaders/noise.wgsl"),
     include_str!("../../../shaders/signal.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
     include_str!("../../../shaders/group.wgsl"),
@@ -65,14 +70,14 @@ pub(crate) struct Shape {
     pub(crate) lanes: usize,
     /// Whether the controller is a fault-tolerant one.
     pub(crate) ftc: bool,
-    /// Whether the agents act on each other.
-    pub(crate) coupled: bool,
+    /// How the agents act on each other.
+    pub(crate) coupling: Coupling,
+    /// Whether the first output is the integral of what is measured.
+    pub(crate) measured_integral: bool,
     /// Whether the observers start from what is measured.
     pub(crate) observer_measured: bool,
-    /// Signals of each kind.
-    pub(crate) counts: Counts,
-    /// The campaign's number of each noise.
-    pub(crate) noise_entries: Vec<u32>,
+    /// Its signals.
+    pub(crate) lists: Lists,
 }
 
 impl Shape {
@@ -120,13 +125,24 @@ impl Shape {
         match self.plant {
             PlantKind::Axis => 1,
             PlantKind::Attitude => 2,
-            PlantKind::Thrust | PlantKind::Leg => 4,
+            PlantKind::Leg => 4,
+            PlantKind::Thrust => 6,
         }
     }
 
-    /// Bytes of workgroup memory; [`shaders/group.wgsl`] says why twice.
+    /// Numbers per invocation in workgroup memory; [`shaders/group.wgsl`] says why twice.
+    pub(crate) fn published(&self) -> usize {
+        2 * self.shared() + usize::from(self.leaks())
+    }
+
+    /// Bytes of workgroup memory.
     pub(crate) fn shared_bytes(&self) -> usize {
-        2 * 4 * self.shared() * self.workgroup()
+        4 * self.published() * self.workgroup()
+    }
+
+    /// Whether commands leak from agent to agent.
+    pub(crate) fn leaks(&self) -> bool {
+        self.lists.leaks()
     }
 
     /// The place of an agent's channel in a workgroup.
@@ -164,7 +180,14 @@ impl Shape {
         text.count("WORKGROUP", self.workgroup());
         text.count("KINDS", self.kinds());
         text.count("FIRST_ATTITUDE", FIRST_ATTITUDE);
-        text.flag("COUPLED", self.coupled);
+        text.flag("COUPLED", self.coupling != Coupling::None);
+        text.flag("CENTROID", self.coupling == Coupling::Centroid);
+        text.number("TEAM_SHARE", 1.0 / self.team as f64);
+        text.flag("MEASURED_INTEGRAL", self.measured_integral);
+        text.flag("RESTLESS", self.lists.restless);
+        text.flag("REMEMBERS", self.lists.remembers);
+        text.flag("LIMITS_RATE", self.lists.limits_rate);
+        text.flag("DISTORTS", self.lists.distorts);
         text.flag("FTC", self.ftc);
         text.flag("LIMITED", self.limited());
         text.flag("CUT", self.cut);
@@ -189,26 +212,31 @@ impl Shape {
             ("REFERENCE_RATE", 3),
             ("COMMAND_GAIN", 3),
             ("TORQUE", 3),
+            ("COMMAND_LOW", 4),
+            ("COMMAND_HIGH", 5),
         ] {
             text.count(name, slot);
         }
         for (name, word) in self.words().named() {
-            text.count(name, word);
+            text.count(&name, word);
         }
+        text.count("PUBLISHED", self.published());
         text.count("SHOWN", SHOWN_WORDS);
         text.count("OUTCOME_WORDS", OUTCOME_WORDS);
-        let entries: Vec<String> = self
-            .noise_entries
-            .iter()
-            .chain((self.noise_entries.is_empty()).then_some(&0))
-            .map(|entry| format!("{entry}u"))
-            .collect();
-        text.name("NOISE_ENTRIES", &format!("array({})", entries.join(", ")));
+        let lists = &self.lists;
+        text.list("NOISE_ENTRIES", &lists.noise_entries);
+        text.list("TURBULENCE_ENTRIES", &lists.turbulence_entries);
+        let (entries, together): (Vec<u32>, Vec<bool>) = lists.bursts.iter().copied().unzip();
+        text.list("BURST_ENTRIES", &entries);
+        text.flags("BURST_TOGETHER", &together);
+        text.flags("RING_RECORDS", &lists.rings);
 
         text.word("ROUNDS", rng::ROUNDS);
         text.words("MULTIPLIERS", rng::MULTIPLIERS);
         text.words("WEYL", rng::WEYL);
         text.count("STREAM_NOISE", Stream::Noise as usize);
+        text.count("STREAM_BURST", Stream::Burst as usize);
+        text.count("STREAM_TURBULENCE", Stream::Turbulence as usize);
         text.count("MEMBERS_PER_AGENT", MEMBERS_PER_AGENT);
 
         text.number("UNIT_SPACING", math::UNIT_SPACING);
@@ -236,8 +264,8 @@ impl Shape {
     }
 
     /// Where a channel's words are.
-    pub(crate) fn words(&self) -> Words {
-        Words::new(self.counts, self.states())
+    pub(crate) fn words(&self) -> Words<'_> {
+        Words::new(&self.lists, self.states())
     }
 }
 
@@ -265,6 +293,24 @@ impl Constants {
 
     fn flag(&mut self, name: &str, value: bool) {
         self.name(name, &value.to_string());
+    }
+
+    /// An array of words; of one zero where there is none, since an array must not be empty.
+    fn list(&mut self, name: &str, words: &[u32]) {
+        let words: Vec<String> = words.iter().map(|word| format!("{word}u")).collect();
+        self.array(name, words, "0u");
+    }
+
+    /// An array of flags; of one false where there is none.
+    fn flags(&mut self, name: &str, flags: &[bool]) {
+        self.array(name, flags.iter().map(bool::to_string).collect(), "false");
+    }
+
+    fn array(&mut self, name: &str, mut items: Vec<String>, empty: &str) {
+        if items.is_empty() {
+            items.push(empty.to_string());
+        }
+        self.name(name, &format!("array({})", items.join(", ")));
     }
 
     fn number(&mut self, name: &str, value: f64) {

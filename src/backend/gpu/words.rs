@@ -1,14 +1,15 @@
 //! What travels to and from the shaders of a group of channels, as 32-bit words: the draws, the outcomes.
 
+use super::lists::{LISTS, Lists, bursts, switches, waves};
 use super::shader::Shape;
-use crate::campaign::{Campaign, Time};
+use crate::campaign::{Campaign, FaultKind, Time};
 use crate::draw::Episode;
 use crate::model::Shown;
 use crate::model::condition::{Block, Condition, Entries};
 use crate::model::episode::{AgentOutcome, PlantKind};
 use crate::model::group::Ending;
 use crate::model::metric::{ChannelOutcome, Metrics};
-use crate::model::signal::{Signals, Switch};
+use crate::model::signal::Wave;
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
@@ -21,67 +22,67 @@ pub(crate) const NEVER: u32 = u32::MAX;
 /// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance, scale of
 /// the ground's reaction.
 const FIXED_WORDS: usize = 9;
-
-/// How many signals of each kind a channel has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Counts {
-    pub(crate) losses: usize,
-    pub(crate) command_biases: usize,
-    pub(crate) sensor_biases: usize,
-    pub(crate) noises: usize,
-    pub(crate) squares: usize,
-    pub(crate) sines: usize,
-}
-
-impl Counts {
-    /// The signals of a campaign's agents; all have the same, if listed as [`Entries::Possible`].
-    pub(crate) fn of<const NC: usize>(signals: &Signals<f32, NC>) -> Self {
-        Self {
-            losses: signals.losses.len(),
-            command_biases: signals.command_biases.len(),
-            sensor_biases: signals.sensor_biases.len(),
-            noises: signals.noises.len(),
-            squares: signals.squares.len(),
-            sines: signals.sines.len(),
-        }
-    }
-
-    fn switches(self) -> usize {
-        self.losses + self.command_biases + self.sensor_biases + self.noises + self.squares
-    }
-}
+/// Words of a switch: onset, end, 1 / ramp, value.
+const SWITCH_WORDS: usize = 4;
+/// Words of a turbulence: keep, cross, noise (three), output (two), states at the start (two).
+const TURBULENCE_WORDS: usize = 9;
+/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held.
+const MEMORY_WORDS: usize = 4;
 
 /// Where the words of a channel are, in its draw and in its state.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Words {
-    counts: Counts,
+pub(crate) struct Words<'l> {
+    lists: &'l Lists,
     states: usize,
 }
 
-impl Words {
-    pub(crate) fn new(counts: Counts, states: usize) -> Self {
-        Self { counts, states }
+impl<'l> Words<'l> {
+    pub(crate) fn new(lists: &'l Lists, states: usize) -> Self {
+        Self { lists, states }
     }
 
     /// Words of a draw.
     pub(crate) fn drawn(self) -> usize {
-        FIXED_WORDS + 2 * self.counts.switches() + 3 * (self.counts.sines + self.counts.squares)
+        let [bursts, waves, rings] = self.lists.groups();
+        let turbulences = self.lists.turbulence_entries.len();
+        FIXED_WORDS
+            + SWITCH_WORDS * self.lists.switches()
+            + 2 * bursts
+            + 3 * waves
+            + rings
+            + TURBULENCE_WORDS * turbulences
     }
 
-    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise.
+    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise, states
+    /// of turbulence, memory and rings.
     pub(crate) fn stored(self) -> usize {
-        17 + self.states + 4 * self.counts.noises
+        self.rings_stored() + self.lists.ring_words()
     }
 
-    /// Every place and count by its name in the shaders. Switches have two words each, and are counted through.
-    pub(crate) fn named(self) -> Vec<(&'static str, usize)> {
-        let counts = self.counts;
-        let command_biases = counts.losses;
-        let sensor_biases = command_biases + counts.command_biases;
-        let noises = sensor_biases + counts.sensor_biases;
-        let squares = noises + counts.noises;
-        let sines = FIXED_WORDS + 2 * counts.switches();
-        vec![
+    fn memory(self) -> usize {
+        let noises = self.lists.noise_entries.len();
+        17 + self.states + 4 * noises + 2 * self.lists.turbulence_entries.len()
+    }
+
+    fn rings_stored(self) -> usize {
+        self.memory()
+            + if self.lists.remembers {
+                MEMORY_WORDS
+            } else {
+                0
+            }
+    }
+
+    /// Every place and count by its name in the shaders.
+    pub(crate) fn named(self) -> Vec<(String, usize)> {
+        let lists = self.lists;
+        let [n_bursts, n_waves, n_rings] = lists.groups();
+        let bursts = FIXED_WORDS + SWITCH_WORDS * lists.switches();
+        let waves = bursts + 2 * n_bursts;
+        let rings = waves + 3 * n_waves;
+        let noises = lists.noise_entries.len();
+        let turbulences = lists.turbulence_entries.len();
+        let mut named: Vec<(String, usize)> = [
             ("EPISODE", 0),
             ("INTEGRAL", 1),
             ("ERROR", 2),
@@ -92,21 +93,14 @@ impl Words {
             ("CONSTANT", 7),
             ("GROUND", 8),
             ("SWITCHES", FIXED_WORDS),
-            ("LOSSES", 0),
-            ("COMMAND_BIASES", command_biases),
-            ("SENSOR_BIASES", sensor_biases),
-            ("NOISES", noises),
-            ("SQUARE_SWITCHES", squares),
-            ("SINES", sines),
-            ("SQUARES", sines + 3 * counts.sines),
+            ("BURSTS", bursts),
+            ("WAVES", waves),
+            ("RINGS", rings),
+            ("TURBULENCES", rings + n_rings),
             ("DRAWN_WORDS", self.drawn()),
-            ("N_SWITCHES", counts.switches()),
-            ("N_LOSSES", counts.losses),
-            ("N_COMMAND_BIASES", counts.command_biases),
-            ("N_SENSOR_BIASES", counts.sensor_biases),
-            ("N_NOISES", counts.noises),
-            ("N_SQUARES", counts.squares),
-            ("N_SINES", counts.sines),
+            ("N_SWITCHES", lists.switches()),
+            ("N_WAVES", n_waves),
+            ("N_TURBULENCES", turbulences),
             ("FAILED", 0),
             ("OUTSIDE", 1),
             ("OUTSIDE_BEFORE_FAULT", 2),
@@ -116,8 +110,20 @@ impl Words {
             ("TOTALS", 11),
             ("CHANNEL", 17),
             ("SAMPLES", 17 + self.states),
+            ("TURBULENCE_STATE", 17 + self.states + 4 * noises),
+            ("MEMORY", self.memory()),
+            ("RINGS_STORED", self.rings_stored()),
             ("STORED_WORDS", self.stored()),
+            ("RING_STEPS", lists.ring_steps),
+            ("HOLD_STEPS", lists.hold_steps as usize),
         ]
+        .map(|(name, value)| (name.to_string(), value))
+        .to_vec();
+        for (list, (name, count)) in LISTS.iter().zip(lists.counts).enumerate() {
+            named.push(((*name).to_string(), lists.first(list)));
+            named.push((format!("N_{name}"), count));
+        }
+        named
     }
 }
 
@@ -131,19 +137,38 @@ pub(crate) struct Span {
     pub(crate) output_first: u32,
 }
 
-/// The signals of a group's channels, which are the same for every agent and episode of the campaign.
-pub(crate) fn signals<const NC: usize>(
+/// The lists of a group's channels.
+pub(crate) fn lists<const NC: usize>(
     campaign: &Campaign,
     first: usize,
     episode: &Episode,
-) -> (Counts, Vec<u32>) {
+) -> Lists {
     let condition: Condition<f32, NC> = Block {
         campaign,
         episodes: std::slice::from_ref(episode),
     }
     .condition(0, first, Entries::Possible);
-    let entries = condition.signals.noises.iter().map(|noise| noise.entry);
-    (Counts::of(&condition.signals), entries.collect())
+    Lists::of(&condition.signals, ring_steps(campaign))
+}
+
+/// The longest past that a campaign's channels may have to remember, in steps.
+fn ring_steps(campaign: &Campaign) -> usize {
+    let of_faults = campaign
+        .faults
+        .iter()
+        .filter(|fault| matches!(fault.kind, FaultKind::Delay | FaultKind::Replay));
+    let lengths = of_faults.map(|fault| &fault.parameters[0]);
+    let longest_s = lengths
+        .chain(&campaign.control.delay_s)
+        .flat_map(|length_s| &length_s.distributions)
+        .map(|length_s| length_s.support().1)
+        .reduce(f64::max);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "validated to be small"
+    )]
+    longest_s.map_or(1, |longest_s| campaign.time.whole_steps(longest_s) as usize)
 }
 
 /// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up with
@@ -184,7 +209,8 @@ fn draws_of<const NC: usize>(
                         block.condition(agent, first, Entries::Possible);
                     for channel in 0..NC {
                         let place = shape.place(channel, agent, lane);
-                        for (k, word) in drawn(episode.index, &condition, channel).enumerate() {
+                        let drawn = drawn(episode.index, &condition, channel);
+                        for (k, word) in drawn.into_iter().enumerate() {
                             out[k * workgroup + place] = word;
                         }
                     }
@@ -199,64 +225,45 @@ pub(crate) fn drawn<const NC: usize>(
     episode: u32,
     condition: &Condition<f32, NC>,
     c: usize,
-) -> impl Iterator<Item = u32> {
+) -> Vec<u32> {
     let signals = &condition.signals;
     let [integral, error, rate] = condition.initial[c].map(f32::to_bits);
-    let switch = |switch: Switch<f32>| [step(switch.onset), switch.value.to_bits()];
-    [
+    let mut words = vec![
         episode,
         integral,
         error,
         rate,
-        condition.inverse_inertia[c].to_bits(),
+        signals.first_inverse_inertia[c].to_bits(),
         condition.kappa.to_bits(),
         step(condition.first_fault),
         signals.constant[c].to_bits(),
         signals.ground[c].to_bits(),
-    ]
-    .into_iter()
-    .chain(
-        [
-            &signals.losses,
-            &signals.command_biases,
-            &signals.sensor_biases,
-        ]
-        .into_iter()
-        .flatten()
-        .flat_map(move |switches| switch(switches[c])),
-    )
-    .chain(
-        signals
-            .noises
-            .iter()
-            .flat_map(move |noise| switch(noise.switch[c])),
-    )
-    .chain(
-        signals
-            .squares
-            .iter()
-            .flat_map(move |square| switch(square[c].switch)),
-    )
-    .chain(
-        signals
-            .sines
-            .iter()
-            .map(move |sine| sine[c])
-            .flat_map(|sine| [sine.amplitude.to_bits(), sine.phase, sine.advance]),
-    )
-    .chain(
-        signals
-            .squares
-            .iter()
-            .map(move |square| square[c])
-            .flat_map(|square| {
-                [
-                    square.inverse_smoothing.to_bits(),
-                    square.phase,
-                    square.advance,
-                ]
-            }),
-    )
+    ];
+    for switch in switches(signals, c).into_iter().flatten() {
+        let (ramp, value) = (switch.inverse_ramp.to_bits(), switch.value.to_bits());
+        words.extend([step(switch.onset), step(switch.end), ramp, value]);
+    }
+    for burst in bursts(signals) {
+        words.extend([burst.slot_steps[c][0], burst.threshold[c][0]]);
+    }
+    for wave in waves(signals) {
+        let Wave {
+            inverse_smoothing,
+            phase,
+            advance,
+            ..
+        } = wave[c];
+        words.extend([inverse_smoothing.to_bits(), phase, advance]);
+    }
+    words.extend(signals.command_rings.iter().map(|ring| ring.length[c][0]));
+    words.extend(signals.sensor_rings.iter().map(|ring| ring.length[c][0]));
+    for turbulence in &signals.turbulences {
+        let filter = &turbulence.filter[c];
+        let fixed = [filter.keep, filter.cross].into_iter();
+        let numbers = fixed.chain(filter.noise).chain(filter.output);
+        words.extend(numbers.chain(turbulence.state[c]).map(f32::to_bits));
+    }
+    words
 }
 
 /// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into the

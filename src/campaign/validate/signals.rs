@@ -3,13 +3,23 @@
 use super::super::check::{Bounds, Check};
 use super::super::error::CampaignError;
 use super::super::file::*;
-use super::super::{Distribution, Disturbance, Drawn, FIRST_ATTITUDE, Fault, FaultChannels, Time};
+use super::super::{
+    Agent, Distribution, Disturbance, Drawn, FIRST_ATTITUDE, Fault, FaultChannels, Time,
+};
+use std::borrow::Cow;
 use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A knot, m/s.
+const KNOT_M_S: f64 = 0.514_444;
 
 /// How far a signal may turn in one step, rad; beyond it the method's stages no longer see its shape.
 const MAX_STEP_RAD: f64 = 0.5;
 /// The channel whose actuator is the thrust where there is no other force.
 const THRUST: usize = FIRST_ATTITUDE - 1;
+
+/// Samples that a delay or a replay may keep of each channel.
+const MAX_REMEMBERED: f64 = 1024.0;
 
 impl Check<'_> {
     /// A disturbance; `walks` says whether the reference is a walk.
@@ -19,10 +29,12 @@ impl Check<'_> {
         file: &DisturbanceFile,
         team: usize,
         time: Time,
+        agent: &Agent,
         walks: bool,
     ) -> Result<Disturbance, CampaignError> {
         let table = format!("disturbance[{index}]");
-        if file.kind == DisturbanceKind::GroundReaction && !walks {
+        let kind = file.kind;
+        if kind == DisturbanceKind::GroundReaction && !walks {
             return Err(self.invalid(
                 format!("{table}.kind"),
                 "\"ground-reaction\"",
@@ -30,21 +42,76 @@ impl Check<'_> {
                 "set reference.kind = \"walk\", or remove it",
             ));
         }
+        let flies = matches!(agent, Agent::Uav(_));
+        if matches!(kind, DisturbanceKind::Gust1Cosine | DisturbanceKind::Dryden) && !flies {
+            return Err(self.invalid(
+                format!("{table}.kind"),
+                format!("{:?}", kind.name()),
+                "wind acts on a UAV, not on joints",
+                "use \"sine\" or \"constant\" for a biped",
+            ));
+        }
+        let file = self.with_wind(&table, file)?;
+        let file = file.as_ref();
         let parameters = self.parameters(
             &table,
             file,
             file.agents.as_deref(),
-            file.kind.parameters(),
+            kind.parameters(),
             team,
         )?;
-        if file.kind == DisturbanceKind::Sine {
-            let key = format!("{table}.frequency_rad_s");
-            self.resolved(&key, &parameters[1], |(_, high)| high, time)?;
+        let key = |name: &str| format!("{table}.{name}");
+        match kind {
+            DisturbanceKind::Sine => {
+                self.resolved(
+                    &key("frequency_rad_s"),
+                    &parameters[1],
+                    |(_, high)| high,
+                    time,
+                )?;
+            }
+            DisturbanceKind::Gust1Cosine => {
+                self.begins(&key("onset_s"), file.onset_s.as_ref(), &parameters[2], time)?;
+                self.resolved(
+                    &key("duration_s"),
+                    &parameters[3],
+                    |(low, _)| TAU / low,
+                    time,
+                )?;
+            }
+            DisturbanceKind::Constant
+            | DisturbanceKind::GroundReaction
+            | DisturbanceKind::Dryden => {}
         }
-        Ok(Disturbance {
-            kind: file.kind,
-            parameters,
-        })
+        Ok(Disturbance { kind, parameters })
+    }
+
+    /// The table of a disturbance with the wind speed of its intensity.
+    fn with_wind<'f>(
+        &self,
+        table: &str,
+        file: &'f DisturbanceFile,
+    ) -> Result<Cow<'f, DisturbanceFile>, CampaignError> {
+        let Some(intensity) = file.intensity else {
+            return Ok(Cow::Borrowed(file));
+        };
+        if file.kind != DisturbanceKind::Dryden || file.wind_m_s.is_some() {
+            return Err(self.invalid(
+                format!("{table}.intensity"),
+                "given",
+                "it stands for the wind_m_s of turbulence",
+                "remove it, or remove wind_m_s",
+            ));
+        }
+        let wind_kn = match intensity {
+            IntensityKind::Light => 15.0,
+            IntensityKind::Moderate => 30.0,
+            IntensityKind::Severe => 45.0,
+        };
+        Ok(Cow::Owned(DisturbanceFile {
+            wind_m_s: Some(Value::Number(wind_kn * KNOT_M_S)),
+            ..file.clone()
+        }))
     }
 
     /// A fault.
@@ -52,83 +119,214 @@ impl Check<'_> {
         &self,
         index: usize,
         file: &FaultFile,
+        name: Arc<str>,
         team: usize,
         time: Time,
-        actuation: ActuationKind,
+        agent: &Agent,
     ) -> Result<Fault, CampaignError> {
         let table = format!("fault[{index}]");
-        if !file.kind.strikes(file.target) {
+        let key = |name: &str| format!("{table}.{name}");
+        let (kind, target) = (file.kind, file.target);
+        if !kind.strikes(target) {
+            let those = FaultKind::ALL
+                .into_iter()
+                .filter(|kind| kind.strikes(target));
+            let names: Vec<&str> = those.map(FaultKind::name).collect();
             return Err(self.invalid(
-                format!("{table}.kind"),
-                format!("{:?}", file.kind.name()),
+                key("kind"),
+                format!("{:?}", kind.name()),
                 "this kind does not strike this target",
-                "actuators have loss-of-effectiveness and bias; sensors have smoothed-square, bias and noise",
+                &format!("the target {:?} has {}", target.name(), names.join(", ")),
             ));
         }
-        let onset_key = format!("{table}.onset_s");
+        let link = self.link(&key("link"), file)?;
+        let of_agent = |name: &str, value: &Option<Value>, bounds: Bounds| match value {
+            None => Ok(None),
+            value => self
+                .of_agents(&key(name), value.as_ref(), None, Per::Agent, bounds, team)
+                .map(Some),
+        };
         let onset_s = self.of_agents(
-            &onset_key,
+            &key("onset_s"),
             file.onset_s.as_ref(),
             Some(0.0),
             Per::Agent,
             Bounds::NonNegative,
             team,
         )?;
-        let last = onset_s
-            .distributions
-            .iter()
-            .map(|onset| onset.support().1)
-            .fold(0.0, f64::max);
-        if let Some(onset) = &file.onset_s
-            && time.onset_step(last) >= time.steps
-        {
-            let last_step_s = f64::from(time.steps - 1) * time.step_s;
-            return Err(self.invalid(
-                onset_key,
-                onset,
-                &format!("a fault must begin before the end, by the last step at {last_step_s} s"),
-                "begin it earlier",
-            ));
-        }
-        let channels = self.fault_channels(&format!("{table}.channels"), file.channels.as_ref())?;
-        let strikes_force = match &channels {
-            FaultChannels::One => true,
-            FaultChannels::These(channels) => channels.iter().any(|channel| *channel < THRUST),
-        };
-        if actuation == ActuationKind::Thrust
-            && file.target == FaultTarget::Actuator
-            && strikes_force
+        self.begins(&key("onset_s"), file.onset_s.as_ref(), &onset_s, time)?;
+        if let Some(ramp_s) = &file.ramp_s
+            && !kind.can_ramp()
         {
             return Err(self.invalid(
-                format!("{table}.channels"),
-                file.channels.as_ref().map_or("\"all\"".into(), shown),
-                "the actuation \"thrust\" has no actuators along x and y",
-                "list some of [3, 4, 5, 6]: the thrust and three torques",
+                key("ramp_s"),
+                ramp_s,
+                &format!("{:?} is there or not", kind.name()),
+                "remove it",
             ));
         }
         let parameters = self.parameters(
             &table,
             file,
             file.agents.as_deref(),
-            file.kind.parameters(),
+            kind.parameters(),
             team,
         )?;
-        if file.kind == FaultKind::SmoothedSquare {
-            let key = format!("{table}.period_s");
-            self.resolved(&key, &parameters[1], |(low, _)| TAU / low, time)?;
+        match kind {
+            FaultKind::SmoothedSquare => {
+                self.resolved(&key("period_s"), &parameters[1], |(low, _)| TAU / low, time)?;
+            }
+            FaultKind::Oscillatory => {
+                self.resolved(
+                    &key("frequency_rad_s"),
+                    &parameters[1],
+                    |(_, high)| high,
+                    time,
+                )?;
+            }
+            FaultKind::Delay => self.remembered(&key("delay_s"), &parameters[0], time)?,
+            FaultKind::Replay => self.remembered(&key("window_s"), &parameters[0], time)?,
+            _ => {}
         }
         Ok(Fault {
-            target: file.target,
-            kind: file.kind,
+            name,
+            target,
+            link,
+            kind,
             probability: self.number(
-                &format!("{table}.probability"),
+                &key("probability"),
                 file.probability.unwrap_or(1.0),
                 Bounds::Share,
             )?,
-            channels,
+            channels: self.struck_channels(&table, file, link, agent)?,
             onset_s,
+            duration_s: of_agent("duration_s", &file.duration_s, Bounds::Positive)?,
+            ramp_s: of_agent("ramp_s", &file.ramp_s, Bounds::NonNegative)?,
             parameters,
         })
+    }
+
+    /// Which way a fault strikes.
+    fn link(&self, key: &str, file: &FaultFile) -> Result<Link, CampaignError> {
+        match (file.target, file.link) {
+            (FaultTarget::Actuator | FaultTarget::Plant, None) => Ok(Link::Command),
+            (FaultTarget::Sensor, None) => Ok(Link::Measurement),
+            (FaultTarget::Network, Some(Link::Measurement))
+                if file.kind == FaultKind::Interference =>
+            {
+                Err(self.invalid(
+                    key,
+                    "\"measurement\"",
+                    "channels interfere on the way of the command",
+                    "remove it",
+                ))
+            }
+            (FaultTarget::Network, link) => Ok(link.unwrap_or(Link::Command)),
+            (_, Some(_)) => Err(self.invalid(
+                key,
+                "given",
+                "only the network has two ways",
+                "remove it, or set target = \"network\"",
+            )),
+        }
+    }
+
+    /// The channels that a fault strikes: on these actuators and this plant.
+    fn struck_channels(
+        &self,
+        table: &str,
+        file: &FaultFile,
+        link: Link,
+        agent: &Agent,
+    ) -> Result<FaultChannels, CampaignError> {
+        let key = format!("{table}.channels");
+        let value = || file.channels.as_ref().map_or("\"all\"".into(), shown);
+        let channels = self.fault_channels(&key, file.channels.as_ref())?;
+        let all = FaultChannels::These((0..self.channels.len()).collect());
+        if file.target == FaultTarget::Plant {
+            let whole = matches!(agent, Agent::Uav(_)) || file.kind == FaultKind::Mass;
+            if !whole {
+                return Err(self.invalid(
+                    format!("{table}.kind"),
+                    format!("{:?}", file.kind.name()),
+                    "a biped stands on a pelvis that does not move: its plant can only change its mass",
+                    "use \"mass\"",
+                ));
+            }
+            if channels != all {
+                return Err(self.invalid(
+                    key,
+                    value(),
+                    "the plant changes as a whole",
+                    "remove it",
+                ));
+            }
+        }
+        let strikes_force = match &channels {
+            FaultChannels::One => true,
+            FaultChannels::These(channels) => channels.iter().any(|channel| *channel < THRUST),
+        };
+        if agent.actuation() == ActuationKind::Thrust
+            && file.target != FaultTarget::Plant
+            && link == Link::Command
+            && strikes_force
+        {
+            return Err(self.invalid(
+                key,
+                value(),
+                "the actuation \"thrust\" has no actuators along x and y",
+                "list some of [3, 4, 5, 6]: the thrust and three torques",
+            ));
+        }
+        Ok(channels)
+    }
+
+    /// Refuses what begins after the run has ended.
+    fn begins(
+        &self,
+        key: &str,
+        value: Option<&Value>,
+        onset_s: &Drawn,
+        time: Time,
+    ) -> Result<(), CampaignError> {
+        let supports = onset_s.distributions.iter().map(Distribution::support);
+        let last = supports.map(|(_, high)| high).fold(0.0, f64::max);
+        match value {
+            Some(value) if time.onset_step(last) >= time.steps => {
+                let last_step_s = f64::from(time.steps - 1) * time.step_s;
+                Err(self.invalid(
+                    key,
+                    value,
+                    &format!("it must begin before the end, by the last step at {last_step_s} s"),
+                    "begin it earlier",
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses pasts that no memory would hold.
+    pub(super) fn remembered(
+        &self,
+        key: &str,
+        length_s: &Drawn,
+        time: Time,
+    ) -> Result<(), CampaignError> {
+        let supports = length_s.distributions.iter().map(Distribution::support);
+        let longest_s = supports.map(|(_, high)| high).fold(0.0, f64::max);
+        if time.whole_steps(longest_s) <= MAX_REMEMBERED {
+            return Ok(());
+        }
+        Err(self.invalid(
+            key,
+            format!("up to {longest_s} s"),
+            &format!(
+                "at most {MAX_REMEMBERED} steps of {} s are remembered, {:.3} s",
+                time.step_s,
+                MAX_REMEMBERED * time.step_s
+            ),
+            "shorten it, or lengthen time.step_s",
+        ))
     }
 
     /// Refuses frequencies that a step cannot resolve: they would be seen as others.

@@ -6,7 +6,7 @@
 use super::{Place, smoke};
 
 /// Each case is refused with 2, the file's name and the words, in one paragraph, and nothing is written.
-fn all_refused(table: &str) {
+pub(super) fn all_refused(table: &str) {
     all_refused_of(smoke, table);
 }
 
@@ -220,8 +220,8 @@ settle_s = 2.0    => settle_s = 6.0      :: time.settle_s (line 10) = 6.0 ~ befo
 "full"            => "thrust"            :: reference.amplitude (line 21) = [2.0, 1.5, 1.0, 0.1, 0.1, 0.3] ~ roll and pitch follow from the force ~ 0 on channels 4 and 5
 "full"            => "thrust" && 0.1, 0.1, 0.3] => 0.0, 0.0, 0.3] :: fault[0].channels (line 55) = "one" ~ no actuators along x and y ~ [3, 4, 5, 6]
 "full"            => "thrust" && 0.1, 0.1, 0.3] => 0.0, 0.0, 0.3] && channels = "one" =>  :: fault[0].channels (line 51) = "all" ~ no actuators along x and y
-target = "actuator" => target = "sensor" :: fault[0].kind (line 53) = "loss-of-effectiveness" ~ does not strike this target ~ sensors have
-target = "sensor" => target = "actuator" :: fault[1].kind (line 61) = "smoothed-square" ~ actuators have loss-of-effectiveness and bias
+target = "actuator" => target = "sensor" :: fault[0].kind (line 53) = "loss-of-effectiveness" ~ does not strike this target ~ the target "sensor" has bias, oscillatory, delay
+target = "sensor" => target = "actuator" :: fault[1].kind (line 61) = "smoothed-square" ~ the target "actuator" has loss-of-effectiveness, bias, stuck, float
 smoothing = 0.1   => smoothing = 0.1\nmagnitude = 1.0 :: fault[1].magnitude (line 66) = 1.0 ~ no such parameter; remove it ~ period_s
 smoothing = 0.1   => smoothing = 0.1\nagents = [{}, { std = 1.0 }, {}] :: fault[1].agents[1].std (line 66) = 1.0 ~ no such parameter
 period_s = { uniform = [6.0, 12.0] } =>  :: fault[1].period_s (line 59) = absent ~ needs it; add it

@@ -99,6 +99,93 @@ fn findings_as_json_are_those_of_the_text_and_of_the_tables() {
 }
 
 #[test]
+fn a_screening_says_which_fault_hurts_which_controller_most() {
+    let place = Place::smoke(&[
+        ("episodes = 3", "episodes = 4"),
+        (
+            "[verdict]",
+            "[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []\n[[strata]]\nfaults = \"all\"\n[verdict]",
+        ),
+    ]);
+    let arguments = [
+        "run",
+        "c.toml",
+        "--episodes",
+        "64",
+        "--overwrite",
+        "--out",
+        "out",
+    ];
+    let text = place.succeeds(&arguments);
+    for word in [
+        "failure rates by stratum",
+        "\n  none ",
+        "\n  mixed ",
+        "which fault hurts most, against the stratum \"none\"",
+        "ftc          fails with none of the faults (at least 16 episodes each)",
+        "pid          fails most often with \"sensor smoothed-square\": ",
+        "RMS error, position, grows most with \"sensor smoothed-square\": ",
+    ] {
+        assert!(text.contains(word), "{word:?} is missing from: {text}");
+    }
+    let found = place.json(&[&arguments as &[&str], &["--json"]].concat());
+    let pid = &found["screening"][1];
+    assert_eq!(
+        (&pid["controller"], &pid["reference"]),
+        (&"pid".into(), &"none".into())
+    );
+    let square = &pid["strata"][1];
+    assert_eq!(square["may_fail_most"], true);
+    // The words show the numbers of the statistics.
+    let more = &square["failure_rate_difference"];
+    let percent = |value: &Value| format!("{:+.1}", 100.0 * value.as_f64().unwrap());
+    let (value, ends) = (percent(&more["value"]), &more["interval_95"]);
+    let shown = format!("{value} % [{}, {}]", percent(&ends[0]), percent(&ends[1]));
+    assert!(text.contains(&shown), "{shown:?} is missing from: {text}");
+    let row = &place.rows("out/screening.csv")[3];
+    assert_eq!(
+        (&*row["controller"], &*row["stratum"]),
+        ("pid", "sensor smoothed-square")
+    );
+    assert_eq!(place.rows("out/comparison.csv").len(), 3 * 5 * 8);
+}
+
+#[test]
+fn a_design_and_an_early_stop_are_told_in_a_sentence() {
+    let place = Place::smoke(&[
+        ("[verdict]", "[sampling]\ndesign = \"sobol\"\n[verdict]"),
+        ("episodes = 3", "episodes = 16"),
+    ]);
+    let text = place.succeeds(&["run", "c.toml", "--out", "out"]);
+    for word in [
+        "design: 8 scrambled Sobol nets of 2 episodes, which are not independent",
+        "the intervals here are Student's t over the 8 replicates",
+        "median [t over replicates 95 %]",
+    ] {
+        assert!(text.contains(word), "{word:?} is missing from: {text}");
+    }
+    assert!(
+        !text.contains("McNemar") && !text.contains("Wilson") && !text.contains("what matters"),
+        "{text}"
+    );
+    let stop = "[stop]\ncontroller = \"pid\"\nevery = 4\nfailure_rate_above = 0.1\n[verdict]";
+    let place = Place::smoke(&[("[verdict]", stop), ("episodes = 3", "episodes = 100")]);
+    assert!(
+        place
+            .succeeds(&["check", "c.toml"])
+            .contains("stops early once it is 95 % sure that the failure rate of pid is above 0.1")
+    );
+    let text = place.succeeds(&["run", "c.toml", "--out", "out"]);
+    for word in [
+        "of 100 episodes, as failure_rate_above = 0.1 is reached",
+        "the failure rate of pid is above ",
+        "sequential 95 %",
+    ] {
+        assert!(text.contains(word), "{word:?} is missing from: {text}");
+    }
+}
+
+#[test]
 fn a_requirement_that_does_not_hold_exits_with_4_after_writing_everything() {
     let with = |controller: &str, limit: &str| {
         let text = format!(
@@ -242,6 +329,90 @@ fn a_replay_writes_its_trajectories_and_shows_the_numbers_of_the_run() {
     );
     let written = fs::read(place.path("out/replay-2-pid.parquet")).unwrap();
     assert!(written.starts_with(b"PAR1") && written.ends_with(b"PAR1"));
+}
+
+#[test]
+fn a_replay_shows_the_attenuation_of_each_channel_or_says_why_there_is_none() {
+    let place = Place::smoke(&[("probability = 0.25", "probability = 1.0")]);
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    let replay = |controller| {
+        place.succeeds(&[
+            "replay",
+            "out",
+            "--episode",
+            "1",
+            "--controller",
+            controller,
+        ])
+    };
+    let ftc = replay("ftc");
+    assert!(
+        ftc.contains("attenuation, the certified level, and whether (24) holds"),
+        "{ftc}"
+    );
+    // One channel of each of the three UAVs loses effectiveness on the way.
+    assert_eq!(ftc.matches("  holds\n").count(), 15, "{ftc}");
+    assert_eq!(ftc.matches("  not applicable\n").count(), 3, "{ftc}");
+    let why = "(24) is not applicable to 3 of 18 channels: fault 0 (loss-of-effectiveness)";
+    assert!(ftc.contains(why), "{ftc}");
+    let pid = replay("pid");
+    assert!(
+        pid.contains("(24) is not applicable to 18 of 18 channels"),
+        "{pid}"
+    );
+    assert!(pid.contains("does not estimate the faults"), "{pid}");
+
+    // A run that kept no findings is replayed all the same; a certificate that was changed is none.
+    let gains = place.read("out/gains.json");
+    let mut file: serde_json::Value = serde_json::from_str(&gains).unwrap();
+    let findings = &mut file["controllers"]["ftc"]["findings"];
+    let certificate = &mut findings["position"]["certificate"];
+    certificate["rho"] = serde_json::json!(certificate["rho"].as_f64().unwrap() / 2.0);
+    place.write("out/gains.json", file.to_string());
+    let said = replay("ftc");
+    assert!(said.contains("does not belong to these gains"), "{said}");
+    assert!(said.contains("  holds\n"), "{said}");
+    file["controllers"]["ftc"]
+        .as_object_mut()
+        .unwrap()
+        .remove("findings");
+    place.write("out/gains.json", file.to_string());
+    let said = replay("ftc");
+    assert!(
+        said.contains("18 of 18 channels: gains.json holds no certificate"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_cross_check_records_the_largest_attenuation_of_each_channel_group() {
+    let place = Place::smoke(&[]);
+    let run = ["run", "c.toml", "--out", "out", "--cross-check", "2"];
+    let said = place.succeeds(&run);
+    let manifest: serde_json::Value =
+        serde_json::from_str(&place.read("out/manifest.json")).unwrap();
+    let rows = manifest["cross_check"]["attenuation"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, group) in rows.iter().zip(["position", "attitude"]) {
+        assert_eq!(
+            (&row["controller"], &row["group"]),
+            (&"ftc".into(), &group.into())
+        );
+        assert_eq!((&row["flown"], &row["violated"]), (&18.into(), &0.into()));
+        assert!((1..=18).contains(&row["applicable"].as_u64().unwrap()));
+        let [largest, certified] = ["largest", "certified"].map(|key| row[key].as_f64().unwrap());
+        assert!(0.0 < largest && largest < certified, "{row}");
+        let line = format!("attenuation of {group} under ftc: at most {largest:.4}");
+        assert!(said.contains(&line), "{line} is missing from: {said}");
+    }
+    // The manifest of a run that knew nothing of it.
+    let mut older = manifest;
+    older["cross_check"]
+        .as_object_mut()
+        .unwrap()
+        .remove("attenuation");
+    place.write("out/manifest.json", older.to_string());
+    place.succeeds(&["replay", "out", "--episode", "0"]);
 }
 
 #[test]

@@ -18,8 +18,8 @@ type Change = (&'static str, fn(&mut Gains));
 const FULL: [Mutation; 20] = [
     (
         "faults begin a step late",
-        "drawn(SWITCHES + 2u * k) <= step",
-        "drawn(SWITCHES + 2u * k) < step",
+        "select(0.0, risen, onset <= step)",
+        "select(0.0, risen, onset < step)",
     ),
     (
         "a workgroup reads draws of the one before",
@@ -59,18 +59,18 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "a square wave begins with the run",
-        "squares[k].held = switch_at(SQUARE_SWITCHES + k, step);",
-        "squares[k].held = drawn_number(SWITCHES + 2u * (SQUARE_SWITCHES + k) + 1u);",
+        "waves[k].held = switch_at(SINES + k, step);",
+        "waves[k].held = switch_value(SINES + k);",
     ),
     (
         "a sine turns twice as fast",
-        "sines[k].phase + sines[k].advance",
-        "sines[k].phase + 2u * sines[k].advance",
+        "waves[k].phase + waves[k].advance",
+        "waves[k].phase + 2u * waves[k].advance",
     ),
     (
         "a sine starts anew with every dispatch",
-        "drawn(word + 1u) + 2u * step * advance, advance);",
-        "drawn(word + 1u), advance);",
+        "drawn(word + 1u) + 2u * step * advance, advance, 0.0);",
+        "drawn(word + 1u), advance, 0.0);",
     ),
     (
         "the observer does not know of its estimate of f2",
@@ -89,8 +89,8 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "the gyroscopic torque turns the wrong way",
-        "fma(gyroscopic, -own.plant.gyro, net * own.inverse_inertia)",
-        "fma(gyroscopic, own.plant.gyro, net * own.inverse_inertia)",
+        "fma(gyroscopic, -own.plant.gyro, net * inverse_inertia)",
+        "fma(gyroscopic, own.plant.gyro, net * inverse_inertia)",
     ),
     (
         "drag pushes",
@@ -134,12 +134,12 @@ const THRUST: [Mutation; 8] = [
     (
         "the observer is told of torques beyond the limit",
         "fma(limited - non_inertial,",
-        "fma(wanted - non_inertial,",
+        "fma(demanded - non_inertial,",
     ),
     (
         "gravity pulls along y",
-        "own.channel == 2u);",
-        "own.channel == 1u);",
+        "setting.plant.gravity, own.channel == 2u);",
+        "setting.plant.gravity, own.channel == 1u);",
     ),
     (
         "thrust loses what another actuator lost",
@@ -192,18 +192,18 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "torques may be as large as they like",
-        "select(wanted, limited, CUT)",
-        "wanted",
+        "select(demanded, limited, CUT)",
+        "demanded",
     ),
     (
         "what limits take counts as given",
-        "let excess = wanted - limited;",
-        "let excess = limited - wanted;",
+        "let excess = demanded - limited;",
+        "let excess = limited - demanded;",
     ),
     (
         "no torque is lost",
-        "let command = fma(demanded, command_gain, command_bias);",
-        "let command = demanded + command_bias;",
+        "let command = actuator_command(wanted);",
+        "let command = wanted + actuator.bias;",
     ),
     (
         "the ground pulls where it pushes",
@@ -212,7 +212,7 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "every robot is as heavy as its model",
-        "(command + force) * own.inverse_inertia",
+        "(command + force) * inverse_inertia",
         "command + force",
     ),
     (

@@ -1,0 +1,257 @@
+//! `[[disturbance]]` and `[[fault]]` as they are written.
+
+use super::value::{ChannelsFile, Value, some_tables};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[[disturbance]]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisturbanceFile {
+    /// Form of the disturbance.
+    pub kind: DisturbanceKind,
+    /// Amplitude or constant value, N or N m.
+    pub amplitude: Option<Value>,
+    /// Sine: angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Sine: phase at t = 0, rad (default 0).
+    pub phase_rad: Option<Value>,
+    /// Ground reaction: share of the series that acts (default 1).
+    pub scale: Option<Value>,
+    /// Gust: its largest speed along the channel, m/s.
+    pub speed_m_s: Option<Value>,
+    /// Gust and turbulence: drag per speed, N s/m.
+    pub gain_n_s_m: Option<Value>,
+    /// Gust: beginning, s.
+    pub onset_s: Option<Value>,
+    /// Gust: length, s.
+    pub duration_s: Option<Value>,
+    /// Turbulence: mean wind 6 m above the ground, m/s.
+    pub wind_m_s: Option<Value>,
+    /// Turbulence: instead of wind_m_s, that of light (15 kn), moderate (30 kn) or severe (45 kn) turbulence.
+    pub intensity: Option<IntensityKind>,
+    /// Turbulence: height above the ground, m; 3 to 305.
+    pub altitude_m: Option<Value>,
+    /// Turbulence: speed against the air, m/s; at least 0.5, for the model does not hold in still air.
+    pub airspeed_m_s: Option<Value>,
+    /// Blocks that override the keys above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
+    pub agents: Option<Vec<SignalBlock>>,
+}
+
+/// Forms of a disturbance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DisturbanceKind {
+    /// amplitude sin(frequency t + phase).
+    Sine,
+    /// A constant.
+    Constant,
+    /// UAV: gain speed (1 - cos(2 pi (t - onset) / duration)) / 2 while it lasts, on x, y and z.
+    #[serde(rename = "gust-1-cosine")]
+    Gust1Cosine,
+    /// UAV: turbulence at low altitude (MIL-F-8785C) through a drag gain, on x (with the wind), y and z.
+    Dryden,
+    /// Biped: the torques J'f with which the ground answers the walk.
+    GroundReaction,
+}
+
+/// Turbulence by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntensityKind {
+    /// Wind of 15 kn.
+    Light,
+    /// Wind of 30 kn.
+    Moderate,
+    /// Wind of 45 kn.
+    Severe,
+}
+
+/// `[[fault]]`
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FaultFile {
+    /// Its name in `[[strata]]` and in what people read (default: target and kind, such as "actuator bias").
+    pub name: Option<String>,
+    /// What fails.
+    pub target: FaultTarget,
+    /// How it fails.
+    pub kind: FaultKind,
+    /// Probability that an agent has this fault (default 1).
+    pub probability: Option<f64>,
+    /// The channels that fail (default "all").
+    pub channels: Option<ChannelsFile>,
+    /// Network: which way is struck (default "command").
+    pub link: Option<Link>,
+    /// Beginning, s (default 0).
+    pub onset_s: Option<Value>,
+    /// How long it stays, s (default: to the end).
+    pub duration_s: Option<Value>,
+    /// Time in which it comes, in equal parts, s (default 0: at once).
+    pub ramp_s: Option<Value>,
+    /// Loss: lost share of the command; bias, hard-over, false data: N, N m, m or rad; scale, mass, inertia: share; interference:
+    /// share of the others' commands.
+    pub magnitude: Option<Value>,
+    /// Smoothed square, oscillatory, outlier: amplitude, N, N m, m or rad.
+    pub amplitude: Option<Value>,
+    /// Oscillatory: angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Smoothed square: period, s.
+    pub period_s: Option<Value>,
+    /// Smoothed square: tau of tanh(sin(..)/tau).
+    pub smoothing: Option<Value>,
+    /// Smoothed square, oscillatory: phase at t = 0, rad (default 0).
+    pub phase_rad: Option<Value>,
+    /// Noise: standard deviation, m or rad.
+    pub std: Option<Value>,
+    /// Drift, rate limit: change per second.
+    pub rate: Option<Value>,
+    /// Delay: s; whole steps, at least one.
+    pub delay_s: Option<Value>,
+    /// Replay: length of the recording before the onset, s.
+    pub window_s: Option<Value>,
+    /// Intermittent, dropout, denial of service: length of a slot of time, s.
+    pub burst_s: Option<Value>,
+    /// Intermittent, dropout, denial of service: share of the slots that are struck; outlier: share of the steps.
+    pub share: Option<Value>,
+    /// Payload: its mass, kg.
+    pub mass_kg: Option<Value>,
+    /// Payload, centre of mass: how far ahead of the centre of thrust, m.
+    pub offset_x_m: Option<Value>,
+    /// Payload, centre of mass: how far to the side, m.
+    pub offset_y_m: Option<Value>,
+    /// Blocks that override the parameters above, one per agent.
+    #[serde(default, deserialize_with = "some_tables")]
+    pub agents: Option<Vec<SignalBlock>>,
+}
+
+/// One agent's parameters of a disturbance or fault; what is absent is taken from the table around it.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SignalBlock {
+    /// Amplitude.
+    pub amplitude: Option<Value>,
+    /// Angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Phase at t = 0, rad.
+    pub phase_rad: Option<Value>,
+    /// Magnitude.
+    pub magnitude: Option<Value>,
+    /// Period, s.
+    pub period_s: Option<Value>,
+    /// tau of tanh(sin(..)/tau).
+    pub smoothing: Option<Value>,
+    /// Standard deviation.
+    pub std: Option<Value>,
+    /// Share of the ground reaction.
+    pub scale: Option<Value>,
+    /// Speed of a gust, m/s.
+    pub speed_m_s: Option<Value>,
+    /// Drag per speed, N s/m.
+    pub gain_n_s_m: Option<Value>,
+    /// Beginning of a gust, s.
+    pub onset_s: Option<Value>,
+    /// Length of a gust, s.
+    pub duration_s: Option<Value>,
+    /// Mean wind, m/s.
+    pub wind_m_s: Option<Value>,
+    /// Height, m.
+    pub altitude_m: Option<Value>,
+    /// Speed against the air, m/s.
+    pub airspeed_m_s: Option<Value>,
+    /// Change per second.
+    pub rate: Option<Value>,
+    /// Delay, s.
+    pub delay_s: Option<Value>,
+    /// Length of a recording, s.
+    pub window_s: Option<Value>,
+    /// Length of a slot of time, s.
+    pub burst_s: Option<Value>,
+    /// Share of the slots that are struck.
+    pub share: Option<Value>,
+    /// Mass, kg.
+    pub mass_kg: Option<Value>,
+    /// How far ahead, m.
+    pub offset_x_m: Option<Value>,
+    /// How far to the side, m.
+    pub offset_y_m: Option<Value>,
+}
+
+/// What fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultTarget {
+    /// The command on its way to the plant.
+    Actuator,
+    /// The measurement where it is made.
+    Sensor,
+    /// A message between plant and controller.
+    Network,
+    /// The body that moves.
+    Plant,
+}
+
+/// Which way of the network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Link {
+    /// From the controller to the actuator.
+    Command,
+    /// From the sensor to the observer.
+    Measurement,
+}
+
+/// How it fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// Actuator: (1 - magnitude) u.
+    LossOfEffectiveness,
+    /// Actuator or sensor: a constant offset.
+    Bias,
+    /// Actuator: stays where it is.
+    Stuck,
+    /// Actuator: gives nothing.
+    Float,
+    /// Actuator: goes to a value of its own, `magnitude`.
+    HardOver,
+    /// Actuator, sensor or network: amplitude sin(frequency t + phase) is added.
+    Oscillatory,
+    /// Actuator: a loss of effectiveness in some slots of time.
+    Intermittent,
+    /// Actuator: changes by at most `rate` per second.
+    RateLimit,
+    /// Actuator, sensor or network: what arrives is `delay_s` old.
+    Delay,
+    /// Actuator, sensor or network: an offset that grows by `rate` per second.
+    Drift,
+    /// Sensor: x and x' are measured (1 + magnitude) times as large.
+    Scale,
+    /// Sensor: normal noise, held over a step.
+    Noise,
+    /// Sensor: shows the last measurement for ever.
+    Freeze,
+    /// Sensor: shows the last measurement in some slots of time.
+    Dropout,
+    /// Sensor: in some steps the measurement is off by the amplitude, up or down.
+    Outlier,
+    /// Sensor: amplitude tanh(sin(2 pi t / period + phase) / smoothing).
+    SmoothedSquare,
+    /// Network: an offset that an attacker adds.
+    FalseData,
+    /// Network: in some slots of time nothing arrives, and the last message is held.
+    DenialOfService,
+    /// Network: what was recorded before the onset is played again and again.
+    Replay,
+    /// Network: `magnitude` times the sum of the other agents' commands on this channel leaks into the command.
+    Interference,
+    /// Plant: the mass (of a biped, M and H) grows by this share.
+    Mass,
+    /// Plant: the inertia of a UAV grows by this share.
+    Inertia,
+    /// Plant: the weight of a UAV acts beside its centre of thrust.
+    CenterOfMass,
+    /// Plant: a point mass is hung on a UAV.
+    Payload,
+}

@@ -1,0 +1,203 @@
+//! Names of faults and `[[strata]]`.
+
+use super::super::check::Check;
+use super::super::error::{CampaignError, nearest};
+use super::super::file::*;
+use super::super::plan::{ALL, Strata, Stratum, StratumFaults};
+use std::sync::Arc;
+
+/// Longest name of a fault or stratum: it heads lines and fills cells.
+const LONGEST_NAME: usize = 60;
+/// Largest share of a stratum.
+const LARGEST_SHARE: u32 = 1000;
+
+impl Check<'_> {
+    /// The name of each fault: its own, or what fails and how, numbered where that is taken.
+    pub(super) fn fault_names(&self, files: &[FaultFile]) -> Result<Vec<Arc<str>>, CampaignError> {
+        let own: Vec<Option<&str>> = files.iter().map(|file| file.name.as_deref()).collect();
+        for (index, name) in own.iter().enumerate() {
+            let Some(name) = name else { continue };
+            let key = format!("fault[{index}].name");
+            self.title(&key, name)?;
+            if own[..index].contains(&Some(name)) {
+                return Err(self.invalid(
+                    key,
+                    format!("{name:?}"),
+                    "another fault has this name",
+                    "rename one of them",
+                ));
+            }
+        }
+        let mut names: Vec<Arc<str>> = Vec::new();
+        for (file, own_name) in files.iter().zip(&own) {
+            let taken = |name: &str| {
+                own.contains(&Some(name)) || names.iter().any(|other| other.as_ref() == name)
+            };
+            let plain = format!("{} {}", file.target.name(), file.kind.name());
+            let numbered = |k: usize| match k {
+                1 => plain.clone(),
+                _ => format!("{plain} {k}"),
+            };
+            // One of so many is free.
+            let mut free = (1..=2 * files.len())
+                .map(numbered)
+                .filter(|name| !taken(name));
+            let name = match own_name {
+                Some(name) => (*name).to_string(),
+                None => free.next().unwrap_or_else(|| plain.clone()),
+            };
+            names.push(name.into());
+        }
+        Ok(names)
+    }
+
+    /// A name that people read: one line, not too long, without blanks at its ends.
+    fn title(&self, key: &str, name: &str) -> Result<(), CampaignError> {
+        let fits = !name.is_empty() && name.chars().count() <= LONGEST_NAME;
+        if fits && name.trim() == name && !name.chars().any(char::is_control) {
+            return Ok(());
+        }
+        Err(self.invalid(
+            key,
+            format!("{name:?}"),
+            &format!(
+                "a name is one line of 1 to {LONGEST_NAME} characters, without blanks at its ends"
+            ),
+            "rename it",
+        ))
+    }
+
+    /// The strata; `faults` are the names of the faults.
+    pub(super) fn strata(
+        &self,
+        files: &[StratumFile],
+        faults: &[Arc<str>],
+        episodes: u32,
+    ) -> Result<Strata, CampaignError> {
+        let mut list: Vec<Stratum> = Vec::new();
+        for (index, file) in files.iter().enumerate() {
+            let table = format!("strata[{index}]");
+            let share = file.share.unwrap_or(1);
+            if !(1..=LARGEST_SHARE).contains(&share) {
+                return Err(self.invalid(
+                    format!("{table}.share"),
+                    share,
+                    &format!("a share is a whole number from 1 to {LARGEST_SHARE}"),
+                    "give the episodes relative to the other strata, or remove the stratum",
+                ));
+            }
+            for (name, faults) in self.stratum(&table, file, faults)? {
+                let key = match file.name {
+                    Some(_) => format!("{table}.name"),
+                    None => table.clone(),
+                };
+                if name.as_ref() == ALL || list.iter().any(|other| other.name == name) {
+                    return Err(self.invalid(
+                        key,
+                        format!("{name:?}"),
+                        match name.as_ref() {
+                            ALL => "in the tables this name stands for all episodes",
+                            _ => "another stratum has this name",
+                        },
+                        "give it another `name`",
+                    ));
+                }
+                list.push(Stratum {
+                    name,
+                    faults,
+                    share,
+                });
+            }
+        }
+        let strata = Strata::new(list);
+        if strata.turn() > episodes as usize {
+            return Err(self.invalid(
+                "episodes",
+                episodes,
+                &format!(
+                    "the shares of the {} strata take {} episodes to go round once",
+                    strata.all().len(),
+                    strata.turn()
+                ),
+                "fly more, or give smaller shares",
+            ));
+        }
+        Ok(strata)
+    }
+
+    /// The name and the faults of each stratum that a table stands for.
+    fn stratum(
+        &self,
+        table: &str,
+        file: &StratumFile,
+        faults: &[Arc<str>],
+    ) -> Result<Vec<(Arc<str>, StratumFaults)>, CampaignError> {
+        let key = format!("{table}.faults");
+        let name = |default: &str| Arc::from(file.name.as_deref().unwrap_or(default));
+        if let Some(name) = &file.name {
+            self.title(&format!("{table}.name"), name)?;
+        }
+        match &file.faults {
+            StratumFaultsFile::Word(word) if word == "all" || word == "each" => {
+                if faults.is_empty() {
+                    return Err(self.invalid(
+                        key,
+                        format!("{word:?}"),
+                        "the campaign has no faults",
+                        "add a [[fault]], or write []",
+                    ));
+                }
+                if word == "all" {
+                    return Ok(vec![(name("mixed"), StratumFaults::Drawn)]);
+                }
+                if let Some(name) = &file.name {
+                    return Err(self.invalid(
+                        format!("{table}.name"),
+                        format!("{name:?}"),
+                        "faults = \"each\" makes several strata, which have the names of the faults",
+                        "remove it",
+                    ));
+                }
+                let alone =
+                    |(k, name): (usize, &Arc<str>)| (name.clone(), StratumFaults::Certain(vec![k]));
+                Ok(faults.iter().enumerate().map(alone).collect())
+            }
+            StratumFaultsFile::Word(word) => Err(self.invalid(
+                key,
+                format!("{word:?}"),
+                "\"each\", \"all\", or a list of names of faults",
+                "take one of these; [] for none",
+            )),
+            StratumFaultsFile::Names(names) => {
+                let mut certain = Vec::new();
+                for (place, own) in names.iter().enumerate() {
+                    let key = format!("{key}[{place}]");
+                    let known = faults.iter().position(|name| name.as_ref() == own);
+                    let Some(fault) = known else {
+                        let all = faults.iter().map(AsRef::as_ref);
+                        let remedy = nearest(own, all).map_or_else(
+                            || "name one of them".to_string(),
+                            |name| format!("did you mean {name:?}?"),
+                        );
+                        let limit = format!("the campaign's faults are {}", faults.join(", "));
+                        return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
+                    };
+                    if certain.contains(&fault) {
+                        return Err(self.invalid(
+                            key,
+                            format!("{own:?}"),
+                            "this fault is in the list already",
+                            "name it once",
+                        ));
+                    }
+                    certain.push(fault);
+                }
+                let default = match names.as_slice() {
+                    [] => "none".to_string(),
+                    names => names.join(" + "),
+                };
+                Ok(vec![(name(&default), StratumFaults::Certain(certain))])
+            }
+        }
+    }
+}

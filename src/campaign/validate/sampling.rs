@@ -1,0 +1,270 @@
+//! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
+
+use super::super::Requirement;
+use super::super::check::{Bounds, Check};
+use super::super::error::{CampaignError, nearest};
+use super::super::file::*;
+use super::super::plan::{ALL, Goal, Sampling, Stop, Strata};
+use crate::draw::MOST_ENTRIES;
+use crate::sampling::{Method, allows};
+use std::sync::Arc;
+
+/// Replicates of a design, if nothing else is asked for.
+const REPLICATES: u32 = 8;
+/// Episodes between two looks, if nothing else is asked for.
+const EVERY: u32 = 64;
+/// Confidence of an early stop, if nothing else is asked for.
+const CONFIDENCE: f64 = 0.95;
+
+impl Check<'_> {
+    /// The sampling design, and whether it can be had of this campaign.
+    pub(super) fn sampling(&self, file: &CampaignFile) -> Result<Sampling, CampaignError> {
+        let own = file.sampling.clone().unwrap_or_default();
+        let replicates = own.replicates.unwrap_or(REPLICATES);
+        let (sampling, name) = match own.design.unwrap_or(DesignFile::Independent) {
+            DesignFile::Independent => {
+                return match own.replicates {
+                    None => Ok(Sampling::Independent),
+                    Some(replicates) => Err(self.invalid(
+                        "sampling.replicates",
+                        replicates,
+                        "independent numbers need no replicates",
+                        "remove it, or give a design: \"latin-hypercube\" or \"sobol\"",
+                    )),
+                };
+            }
+            DesignFile::LatinHypercube => (
+                Sampling::LatinHypercube { replicates },
+                "\"latin-hypercube\"",
+            ),
+            DesignFile::Sobol => (Sampling::Sobol { replicates }, "\"sobol\""),
+        };
+        let refused =
+            |limit: &str, remedy: &str| Err(self.invalid("sampling.design", name, limit, remedy));
+        if !file.strata.is_empty() {
+            return refused(
+                "the design balances all episodes together, and would leave each of the strata without balance",
+                "use \"independent\", or remove [[strata]]",
+            );
+        }
+        if file.disturbance.len().max(file.fault.len()) > MOST_ENTRIES {
+            return refused(
+                &format!("a design has at most {MOST_ENTRIES} disturbances and as many faults"),
+                "use \"independent\"",
+            );
+        }
+        self.divides(sampling, file.episodes)?;
+        Ok(sampling)
+    }
+
+    /// Refuses a number of episodes that the design does not divide into equal, balanced replicates.
+    pub(in crate::campaign) fn divides(
+        &self,
+        sampling: Sampling,
+        episodes: u32,
+    ) -> Result<(), CampaignError> {
+        let Some(replicates) = sampling.replicates() else {
+            return Ok(());
+        };
+        if replicates == 0 {
+            return Err(self.invalid(
+                "sampling.replicates",
+                0,
+                "there is at least one replicate",
+                "use five or more: their scatter gives the intervals",
+            ));
+        }
+        let rows = episodes.div_ceil(replicates).max(2);
+        let (whole, words) = match sampling {
+            Sampling::Sobol { .. } => (
+                rows.checked_next_power_of_two(),
+                "nets, each of a power of two of episodes",
+            ),
+            _ => (Some(rows), "hypercubes of equal size, 2 or more"),
+        };
+        let fitting = whole.and_then(|rows| rows.checked_mul(replicates));
+        if fitting == Some(episodes) {
+            return Ok(());
+        }
+        let remedy = fitting.map_or("take fewer replicates".to_string(), |fitting| {
+            format!("fly {fitting} episodes, or change sampling.replicates")
+        });
+        Err(self.invalid(
+            "episodes",
+            episodes,
+            &format!("sampling.replicates = {replicates} makes {replicates} {words}"),
+            &remedy,
+        ))
+    }
+
+    /// When the run may end early.
+    pub(super) fn stop(
+        &self,
+        file: &CampaignFile,
+        controllers: &[String],
+        sampling: Sampling,
+    ) -> Result<Option<Stop>, CampaignError> {
+        let Some(own) = &file.stop else {
+            return Ok(None);
+        };
+        if !allows(sampling.design(), Method::FailureRate) {
+            return Err(self.invalid(
+                "stop",
+                "given",
+                "what is proved on the way takes independent episodes",
+                "remove it, or set sampling.design = \"independent\"",
+            ));
+        }
+        if !file.strata.is_empty() {
+            return Err(self.invalid(
+                "stop",
+                "given",
+                "what is proved on the way takes episodes of one kind, and strata are of several",
+                "remove it, or remove [[strata]]",
+            ));
+        }
+        let controller = self.controller("stop.controller", &own.controller, controllers)?;
+        let goal = |key: &str, value: Option<f64>, most: f64, goal: fn(f64) -> Goal| {
+            value.map(|value| self.between(key, value, 0.0, most).map(goal))
+        };
+        let goals = [
+            goal(
+                "stop.failure_rate_below",
+                own.failure_rate_below,
+                1.0,
+                Goal::Below,
+            ),
+            goal(
+                "stop.failure_rate_above",
+                own.failure_rate_above,
+                1.0,
+                Goal::Above,
+            ),
+            goal("stop.half_width", own.half_width, 0.5, Goal::HalfWidth),
+        ];
+        let goals = goals
+            .into_iter()
+            .flatten()
+            .collect::<Result<Vec<Goal>, _>>()?;
+        if goals.is_empty() {
+            return Err(self.invalid(
+                "stop",
+                "without a goal",
+                "a run ends early when something is known of the failure rate",
+                "give failure_rate_below, failure_rate_above or half_width",
+            ));
+        }
+        let every = own.every.unwrap_or(EVERY);
+        if every == 0 {
+            return Err(self.invalid(
+                "stop.every",
+                0,
+                "at least one episode lies between two looks",
+                "give a positive number",
+            ));
+        }
+        Ok(Some(Stop {
+            controller,
+            goals,
+            confidence: self.between(
+                "stop.confidence",
+                own.confidence.unwrap_or(CONFIDENCE),
+                0.0,
+                1.0,
+            )?,
+            every,
+        }))
+    }
+
+    /// The conditions on the result.
+    pub(super) fn requirements(
+        &self,
+        files: &[RequireFile],
+        controllers: &[String],
+        strata: &Strata,
+        sampling: Sampling,
+    ) -> Result<Vec<Requirement>, CampaignError> {
+        let of_file = |(index, file): (usize, &RequireFile)| {
+            let table = format!("require[{index}]");
+            let key = format!("{table}.controller");
+            let controller = self.controller(&key, &file.controller, controllers)?;
+            let key = format!("{table}.failure_rate_upper_95");
+            let failure_rate_upper_95 =
+                self.number(&key, file.failure_rate_upper_95, Bounds::Share)?;
+            if !allows(sampling.design(), Method::FailureRate) {
+                return Err(self.invalid(
+                    key,
+                    in_toml(failure_rate_upper_95),
+                    "its bound takes independent episodes, which those of a sampling design are not",
+                    "set sampling.design = \"independent\", or remove the [[require]]",
+                ));
+            }
+            Ok(Requirement {
+                controller: controllers[controller].clone(),
+                stratum: self.required_stratum(&table, file, strata)?,
+                failure_rate_upper_95,
+            })
+        };
+        files.iter().enumerate().map(of_file).collect()
+    }
+
+    fn required_stratum(
+        &self,
+        table: &str,
+        file: &RequireFile,
+        strata: &Strata,
+    ) -> Result<Arc<str>, CampaignError> {
+        let wanted = file.stratum.as_deref().unwrap_or(ALL);
+        let names: Vec<&str> = strata.all().iter().map(|stratum| &*stratum.name).collect();
+        if wanted == ALL || names.contains(&wanted) {
+            return Ok(wanted.into());
+        }
+        let remedy = nearest(wanted, names.iter().copied()).map_or_else(
+            || "name one of them, or remove it".to_string(),
+            |name| format!("did you mean {name:?}?"),
+        );
+        let limit = match names.as_slice() {
+            [] => "the campaign has no [[strata]]".to_string(),
+            names => format!("the campaign's strata are {}", names.join(", ")),
+        };
+        Err(self.invalid(
+            format!("{table}.stratum"),
+            format!("{wanted:?}"),
+            &limit,
+            &remedy,
+        ))
+    }
+
+    /// The index of a controller of the campaign.
+    fn controller(
+        &self,
+        key: &str,
+        name: &str,
+        controllers: &[String],
+    ) -> Result<usize, CampaignError> {
+        controllers
+            .iter()
+            .position(|own| own == name)
+            .ok_or_else(|| {
+                self.invalid(
+                    key,
+                    format!("{name:?}"),
+                    &format!("the campaign's controllers are {}", controllers.join(", ")),
+                    "name one of them, or add it to `controllers`",
+                )
+            })
+    }
+
+    /// A number between two others.
+    fn between(&self, key: &str, value: f64, low: f64, high: f64) -> Result<f64, CampaignError> {
+        if low < value && value < high {
+            return Ok(value);
+        }
+        Err(self.invalid(
+            key,
+            in_toml(value),
+            &format!("must lie between {low} and {high}"),
+            "give a value within the limits",
+        ))
+    }
+}

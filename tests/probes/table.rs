@@ -1,0 +1,389 @@
+//! The probes: their names and the functions that they call. `twins` sees to it that none is missing.
+
+use super::harness::{Compared, Lab};
+use super::world::World;
+use super::{buffers, groups, leg, loops, memory, pure, shapes, signals};
+use crate::model::episode::PlantKind;
+
+/// A probe of one or a few functions.
+pub(super) struct Probe {
+    pub(super) name: &'static str,
+    /// The functions that it calls.
+    pub(super) functions: &'static [&'static str],
+    pub(super) run: fn(&Lab) -> Compared,
+}
+
+/// A probe over all shapes.
+macro_rules! over_shapes {
+    ($probe:path) => {
+        |lab| {
+            let mut all = Compared::default();
+            for shape in shapes::probed() {
+                all.add(match (shape.plant, shape.ftc) {
+                    (PlantKind::Axis, true) => {
+                        $probe(lab, &World::<_, 1, 10, 0>::new(shape, shapes::axis()))
+                    }
+                    (PlantKind::Axis, false) => {
+                        $probe(lab, &World::<_, 1, 6, 0>::new(shape, shapes::axis()))
+                    }
+                    (PlantKind::Attitude, true) => {
+                        $probe(lab, &World::<_, 3, 10, 0>::new(shape, shapes::attitude()))
+                    }
+                    (PlantKind::Attitude, false) => {
+                        $probe(lab, &World::<_, 3, 6, 0>::new(shape, shapes::attitude()))
+                    }
+                    (PlantKind::Thrust, true) => {
+                        $probe(lab, &World::<_, 6, 10, 4>::new(shape, shapes::thrust()))
+                    }
+                    (PlantKind::Thrust, false) => {
+                        $probe(lab, &World::<_, 6, 6, 4>::new(shape, shapes::thrust()))
+                    }
+                    (PlantKind::Leg, true) => $probe(
+                        lab,
+                        &World::<_, 6, 10, 0>::new(shape, shapes::leg::<true>()),
+                    ),
+                    (PlantKind::Leg, false) => $probe(
+                        lab,
+                        &World::<_, 6, 6, 0>::new(shape, shapes::leg::<false>()),
+                    ),
+                });
+                // A changed shader need not be flown on.
+                if !all.wrong.is_empty() {
+                    break;
+                }
+            }
+            all
+        }
+    };
+}
+
+/// A row of [`PROBES`].
+macro_rules! probe {
+    ($name:literal, [$($function:literal),+], $run:expr) => {
+        Probe { name: $name, functions: &[$($function),+], run: $run }
+    };
+}
+
+/// The rotation, of both plants that have one.
+fn rotation(lab: &Lab) -> Compared {
+    let [_, _, _, attitude, _, thrust, ..] = shapes::probed();
+    let plant = shapes::attitude();
+    let mut all = loops::rotation(lab, &World::<_, 3, 10, 0>::new(attitude, plant), plant);
+    let world = World::<_, 6, 10, 4>::new(thrust, shapes::thrust());
+    all.add(loops::rotation(lab, &world, shapes::thrust().attitude));
+    all
+}
+
+/// What a joint reads and hears of the others.
+fn leg_rows(lab: &Lab) -> Compared {
+    let [.., leg] = shapes::probed();
+    leg::matrix_rows(lab, &World::<_, 6, 10, 0>::new(leg, shapes::leg::<true>()))
+}
+
+/// The forward dynamics of a leg.
+fn leg_dynamics(lab: &Lab) -> Compared {
+    let [.., leg, _] = shapes::probed();
+    leg::dynamics(lab, &World::<_, 6, 6, 0>::new(leg, shapes::leg::<false>()))
+}
+
+/// Pairs of normal numbers.
+fn pairs(lab: &Lab) -> Compared {
+    let [shape, ..] = shapes::probed();
+    memory::pairs(lab, &World::<_, 1, 10, 0>::new(shape, shapes::axis()))
+}
+
+/// Functions of their arguments alone.
+pub(super) const PURE: &[Probe] = &[
+    probe!("lane_max", ["lane_max"], pure::lane_max),
+    probe!("lane_min", ["lane_min"], pure::lane_min),
+    probe!("lane_select_le", ["lane_select_le"], pure::lane_select_le),
+    probe!("lane_within", ["lane_within"], pure::lane_within),
+    probe!("lane_turns_sin", ["lane_turns_sin"], pure::lane_turns_sin),
+    probe!(
+        "lane_unit_from_words",
+        ["lane_unit_from_words"],
+        pure::lane_unit_from_words
+    ),
+    probe!("lane_ln", ["lane_ln"], pure::lane_ln),
+    probe!(
+        "polynomials",
+        [
+            "polynomial_4",
+            "polynomial_5",
+            "polynomial_7",
+            "polynomial_9"
+        ],
+        pure::polynomials
+    ),
+    probe!("sin_folded", ["sin_folded"], pure::sin_folded),
+    probe!("sin_cos", ["sin_cos"], pure::sin_cos),
+    probe!("tanh", ["tanh"], pure::tanh),
+    probe!("atan2", ["atan2"], pure::atan2),
+    probe!("ln_split", ["ln_split"], pure::ln_split),
+    probe!("wide_product", ["wide_product"], pure::wide_products),
+    probe!("philox4x32", ["philox4x32"], pure::philox),
+    probe!("address_words", ["address_words"], pure::address_words),
+    probe!("body_axis", ["body_axis"], pure::body_axes),
+    probe!("clamp", ["clamp"], pure::clamps),
+];
+
+/// What a stage of a step is made of.
+pub(super) const LOOPS: &[Probe] = &[
+    probe!(
+        "stepped",
+        ["stepped_at", "stepped_take"],
+        over_shapes!(loops::stepped)
+    ),
+    probe!(
+        "gains",
+        [
+            "injection",
+            "feedback_gains",
+            "smoothing",
+            "sensor_fault_input",
+            "is_attitude",
+            "channel_gains_measured"
+        ],
+        over_shapes!(loops::gains)
+    ),
+    probe!(
+        "controller",
+        ["feedback", "fault_estimates", "injected"],
+        over_shapes!(loops::controller)
+    ),
+    probe!(
+        "step_channel",
+        ["step_channel"],
+        over_shapes!(loops::step_channels)
+    ),
+    probe!(
+        "reference",
+        ["reference", "reference_at"],
+        over_shapes!(loops::references)
+    ),
+    probe!(
+        "plant",
+        [
+            "publish_channel",
+            "respond",
+            "axis_respond",
+            "attitude_respond",
+            "thrust_respond",
+            "leg_accelerate"
+        ],
+        over_shapes!(loops::plant)
+    ),
+    probe!(
+        "matrix_row",
+        ["matrix_row", "plus_product", "leg_seen"],
+        leg_rows
+    ),
+    probe!(
+        "forward_dynamics",
+        [
+            "forward_dynamics",
+            "turn",
+            "damped",
+            "first_motion",
+            "first_moment",
+            "second_motion",
+            "next_motion",
+            "at_lever",
+            "wrench",
+            "turned",
+            "turned_back",
+            "twisted",
+            "untwisted",
+            "carried",
+            "joined",
+            "levered",
+            "tip",
+            "composite",
+            "turned_second",
+            "twisted_second",
+            "momentum"
+        ],
+        leg_dynamics
+    ),
+    probe!("attitude_acceleration", ["attitude_acceleration"], rotation),
+];
+
+/// When faults are there, what is remembered, and what is random in every step.
+pub(super) const MEMORY: &[Probe] = &[
+    probe!(
+        "switches",
+        ["switch_weight", "switch_value", "switch_at", "next_change"],
+        over_shapes!(memory::switched)
+    ),
+    probe!(
+        "bursts",
+        ["burst_at", "own_member"],
+        over_shapes!(memory::burst)
+    ),
+    probe!(
+        "actuator_command",
+        ["actuator_command"],
+        over_shapes!(memory::actuators)
+    ),
+    probe!("ring_hold", ["ring_hold"], over_shapes!(memory::rings_held)),
+    probe!(
+        "ring_recall",
+        ["ring_recall", "ring_or_past"],
+        over_shapes!(memory::rings_played)
+    ),
+    probe!(
+        "ring_record",
+        ["ring_record"],
+        over_shapes!(memory::rings_recorded)
+    ),
+    probe!(
+        "ring_read",
+        ["ring_read", "ring_place"],
+        over_shapes!(memory::rings_read)
+    ),
+    probe!("normal_pair", ["normal_pair"], pairs),
+    probe!("noise_draw", ["noise_draw"], over_shapes!(memory::noise)),
+    probe!(
+        "turbulence",
+        [
+            "turbulence_filter",
+            "turbulence_force",
+            "turbulence_advance"
+        ],
+        over_shapes!(memory::turbulence)
+    ),
+];
+
+/// What acts on a channel, and what is kept of it.
+pub(super) const SIGNALS: &[Probe] = &[
+    probe!(
+        "signals_begin",
+        ["signals_begin", "signals_ticks"],
+        over_shapes!(signals::begun)
+    ),
+    probe!(
+        "signals_hold",
+        ["signals_hold"],
+        over_shapes!(signals::held)
+    ),
+    probe!(
+        "held_apart",
+        ["hold_command", "hold_sensor"],
+        over_shapes!(signals::held_apart)
+    ),
+    probe!(
+        "signals_evaluate",
+        ["signals_evaluate"],
+        over_shapes!(signals::evaluated)
+    ),
+    probe!("wave_turned", ["wave_turned"], over_shapes!(signals::turns)),
+    probe!(
+        "commands",
+        ["recall_command", "limit_rate"],
+        over_shapes!(signals::commands)
+    ),
+    probe!("measure", ["measure"], over_shapes!(signals::measured)),
+    probe!(
+        "signals_remember",
+        ["signals_remember"],
+        over_shapes!(signals::remembered)
+    ),
+    probe!(
+        "metrics_take",
+        ["metrics_take"],
+        over_shapes!(signals::metrics)
+    ),
+    probe!(
+        "metrics_flush",
+        ["metrics_flush"],
+        over_shapes!(signals::flushed)
+    ),
+    probe!(
+        "add_to_total",
+        ["add_to_total"],
+        over_shapes!(signals::added)
+    ),
+    probe!(
+        "metrics_before_fault",
+        ["metrics_before_fault"],
+        over_shapes!(signals::before_fault)
+    ),
+];
+
+/// Agents and teams, and the buffers that they live in.
+pub(super) const GROUPS: &[Probe] = &[
+    probe!(
+        "slot",
+        ["slot", "seen", "publish", "command_slot"],
+        over_shapes!(groups::slots)
+    ),
+    probe!("team_sum", ["team_sum"], over_shapes!(groups::team_sum)),
+    probe!(
+        "agent_respond",
+        ["agent_respond"],
+        over_shapes!(groups::responses)
+    ),
+    probe!(
+        "team_commands",
+        ["team_commands", "finite"],
+        over_shapes!(groups::team_commands)
+    ),
+    probe!(
+        "agent_seen",
+        ["agent_motion", "agent_distortion", "agent_feedback"],
+        over_shapes!(groups::seen)
+    ),
+    probe!(
+        "agent_remember",
+        ["agent_remember"],
+        over_shapes!(groups::remembered)
+    ),
+    probe!(
+        "group_end_step",
+        ["group_end_step"],
+        over_shapes!(groups::ended)
+    ),
+    probe!(
+        "agent_observe",
+        ["agent_observe"],
+        over_shapes!(groups::observed)
+    ),
+    probe!("group_hold", ["group_hold"], over_shapes!(groups::held)),
+    probe!(
+        "group_begin_step",
+        ["group_begin_step"],
+        over_shapes!(groups::begun)
+    ),
+    probe!("group_stage", ["group_stage"], over_shapes!(groups::stages)),
+    probe!(
+        "group_advance",
+        ["group_advance"],
+        over_shapes!(groups::advanced)
+    ),
+    probe!("group_show", ["group_show"], over_shapes!(groups::shown)),
+    probe!(
+        "identify",
+        [
+            "identify",
+            "drawn",
+            "drawn_number",
+            "stored",
+            "stored_number",
+            "store",
+            "store_number"
+        ],
+        over_shapes!(buffers::identified)
+    ),
+    probe!(
+        "channel_plant",
+        ["channel_plant"],
+        over_shapes!(buffers::constants)
+    ),
+    probe!("resume", ["resume"], over_shapes!(buffers::resumed)),
+    probe!("keep", ["keep"], over_shapes!(buffers::kept)),
+];
+
+/// All probes.
+pub(super) fn probes() -> impl Iterator<Item = &'static Probe> {
+    [PURE, LOOPS, MEMORY, SIGNALS, GROUPS].into_iter().flatten()
+}

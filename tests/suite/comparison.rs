@@ -1,0 +1,252 @@
+//! What is said of each stratum, against numbers worked out by hand.
+
+use crate::common::altered;
+use urts_mc::campaign::Campaign;
+use urts_mc::comparison::{compare, comparison_table, screen, summarise, summary_table, unmet};
+use urts_mc::model::rng::{Address, Stream};
+use urts_mc::tables::{Scores, Status};
+
+/// One UAV under two controllers; episodes take turns: an actuator fault, a sensor fault, none.
+fn campaign(episodes: u32) -> Campaign {
+    altered(
+        "smoke",
+        &[
+            (
+                "[verdict]",
+                "[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []\n[[require]]\ncontroller = \"ftc\"\nstratum = \"none\"\nfailure_rate_upper_95 = 0.4\n[[require]]\ncontroller = \"ftc\"\nfailure_rate_upper_95 = 0.4\n[verdict]",
+            ),
+            ("team = 3", "team = 1"),
+            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\", \"pid\""),
+            (
+                "[[reference.agents]]\ncenter = [0.0, 0.0, 4.0, 0.0, 0.0, 0.0]\nphase_rad = [0.3, 0.7, 1.1, 0.2, 0.4, 0.6]\n[[reference.agents]]\ncenter = [1.0, 0.5, 5.0, 0.0, 0.0, 0.0]\nphase_rad = [0.6, 1.4, 2.2, 0.4, 0.8, 1.2]\n",
+                "",
+            ),
+            ("episodes = 32", &format!("episodes = {episodes}")),
+        ],
+    )
+}
+
+/// Scores without a flight: whether a controller fails in an episode, and its RMS error on all channels of all agents.
+fn scores(campaign: &Campaign, outcome: impl Fn(usize, usize) -> (Status, f64)) -> Scores {
+    let episodes = campaign.episodes as usize;
+    let channels = campaign.team * campaign.channels().len();
+    let controllers = 0..campaign.controllers.len();
+    let errors = |controller: usize| -> Vec<f64> {
+        let of_episode = |episode| vec![outcome(controller, episode).1; channels];
+        (0..episodes).flat_map(of_episode).collect()
+    };
+    Scores {
+        status: controllers
+            .clone()
+            .map(|controller| (0..episodes).map(|k| outcome(controller, k).0).collect())
+            .collect(),
+        rmse: controllers.clone().map(errors).collect(),
+        max_abs: controllers.map(errors).collect(),
+        fault_occurs: vec![vec![false; episodes]; campaign.faults.len()],
+        conditions: Vec::new(),
+    }
+}
+
+/// In 30 episodes, ten of each stratum: the FTC fails twice with the actuator fault; the PID fails in seven others of those, and
+/// five times with the sensor fault; its errors are 2, 3 and 5 times those of the FTC.
+fn by_hand(campaign: &Campaign) -> Scores {
+    scores(campaign, |controller, episode| {
+        let (turn, stratum) = (episode / 3, episode % 3);
+        let fails = match (controller, stratum) {
+            (0, 0) => turn < 2,
+            (1, 0) => turn > 2,
+            (1, 1) => turn < 5,
+            _ => false,
+        };
+        let status = if fails { Status::Exceeded } else { Status::Ok };
+        let error = [1.0, [2.0, 3.0, 5.0][stratum]][controller];
+        (status, 0.01 * error)
+    })
+}
+
+#[test]
+fn each_stratum_is_compared_by_its_own_episodes() {
+    let campaign = campaign(30);
+    let scores = by_hand(&campaign);
+    let comparisons = compare(&campaign, &scores);
+    let names = [
+        "all",
+        "actuator loss-of-effectiveness",
+        "sensor smoothed-square",
+        "none",
+    ];
+    // (both, only ftc, only pid, neither), McNemar's mid-p of the discordant ones, which is twice the sum of the binomial
+    // probabilities below the smaller count and half of its own: 2 of 14, 2 of 9, 0 of 5, 0 of 0.
+    let mid_p_of_2_in_14 = 2.0 * (1.0 + 14.0 + 91.0 / 2.0) / 16384.0;
+    let mid_p_of_2_in_9 = 2.0 * (1.0 + 9.0 + 36.0 / 2.0) / 512.0;
+    let expected = [
+        ((0, 2, 12, 16), mid_p_of_2_in_14, 4.0 * mid_p_of_2_in_14),
+        ((0, 2, 7, 1), mid_p_of_2_in_9, 2.0 * mid_p_of_2_in_9),
+        ((0, 0, 5, 5), 1.0 / 32.0, 3.0 / 32.0),
+        ((0, 0, 0, 10), 1.0, 1.0),
+    ];
+    assert_eq!(comparisons.len(), 4);
+    for ((found, name), (counts, mid_p, p_holm)) in comparisons.iter().zip(names).zip(expected) {
+        assert_eq!(
+            (&*found.a, &*found.b, &*found.stratum),
+            ("ftc", "pid", name)
+        );
+        let own = found.failures;
+        assert_eq!((own.both, own.only_a, own.only_b, own.neither), counts);
+        // Sums of a few exact fractions.
+        assert!((found.mid_p.unwrap() - mid_p).abs() < 1e-12, "{found:?}");
+        assert!((found.p_holm.unwrap() - p_holm).abs() < 1e-12, "{found:?}");
+    }
+    for (found, times) in comparisons.iter().zip([3.0, 2.0, 3.0, 5.0_f64]) {
+        for ratio in &found.ratios {
+            let log_ratio = ratio.log_ratio.unwrap();
+            assert!((log_ratio.value - times.ln()).abs() < 1e-12);
+            assert!(log_ratio.interval.is_some() && ratio.over_replicates.is_none());
+            assert_eq!(ratio.win_rate.unwrap().value, 1.0);
+        }
+    }
+    let frame = comparison_table(&campaign, &comparisons)
+        .to_frame()
+        .unwrap();
+    for name in ["stratum", "mcnemar_mid_p", "mcnemar_mid_p_holm"] {
+        assert!(frame.column(name).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
+    let campaign = campaign(30);
+    let scores = by_hand(&campaign);
+    let summary = summarise(&campaign, &scores);
+    let failed = |controller: &str, stratum: &str| {
+        let mut rows = summary.iter().map(|row| &row.failures);
+        let row = rows.find(|row| row.controller == controller && &*row.stratum == stratum);
+        let row = row.unwrap();
+        assert!(row.wilson.is_some() && row.sequential.is_none() && row.replicates.is_none());
+        (row.failed(), row.n)
+    };
+    assert_eq!(failed("ftc", "all"), (2, 30));
+    assert_eq!(failed("ftc", "actuator loss-of-effectiveness"), (2, 10));
+    assert_eq!(failed("pid", "sensor smoothed-square"), (5, 10));
+    assert_eq!(failed("pid", "none"), (0, 10));
+    // Two controllers, four parts, two groups, two metrics: nothing else is a part.
+    assert_eq!(
+        summary_table(&campaign, &summary)
+            .to_frame()
+            .unwrap()
+            .height(),
+        32
+    );
+    // Of 10 without failure the bound is 1 - 0.05^(1/10) = 0.26, of 2 in 30 it is 0.20.
+    assert!(unmet(&campaign, &scores).is_empty());
+    let mut strict = campaign.clone();
+    for requirement in &mut strict.requirements {
+        requirement.failure_rate_upper_95 = 0.25;
+    }
+    let unmet = unmet(&strict, &scores);
+    assert_eq!(unmet.len(), 1);
+    assert_eq!((&*unmet[0].1.stratum, unmet[0].1.n), ("none", 10));
+}
+
+#[test]
+fn the_fault_that_hurts_most_is_found_and_what_cannot_be_told_apart_is_named() {
+    // 600 episodes: of the 200 with each fault the PID fails in 100 and in 40; the FTC never does. Errors of the FTC double with
+    // the sensor fault, and scatter by a factor of 1.1 either way.
+    let campaign = campaign(600);
+    let scores = scores(&campaign, |controller, episode| {
+        let (turn, stratum) = (episode / 3, episode % 3);
+        let fails = controller == 1
+            && match stratum {
+                0 => turn % 2 == 0,
+                1 => turn % 5 == 0,
+                _ => false,
+            };
+        let scatter = 1.1_f64.powf((turn % 21) as f64 / 10.0 - 1.0);
+        let growth = if stratum == 1 { 2.0 } else { 1.0 };
+        let status = if fails { Status::Exceeded } else { Status::Ok };
+        (status, 0.01 * scatter * growth)
+    });
+    let screenings = screen(&campaign, &scores);
+    let [ftc, pid] = screenings.as_slice() else {
+        panic!("two controllers")
+    };
+    assert_eq!((&*ftc.reference, &*pid.reference), ("none", "none"));
+    // Indices of the strata: the actuator's fault, then the sensor's.
+    assert_eq!(pid.most_failures, [0]);
+    assert_eq!(ftc.most_failures, [0, 1]);
+    assert_eq!(ftc.most_growth, [[1], [1]]);
+    let more = pid.harms[0].failures.unwrap();
+    assert_eq!(more.value, 0.5);
+    // Newcombe's interval of 100 in 200 against 0 in 200, from Wilson's (0.4314, 0.5686) and (0, 0.0188).
+    assert!(
+        (more.interval.lower - 0.4288).abs() < 1e-4 && (more.interval.upper - 0.5686).abs() < 1e-4
+    );
+    let (group, growth) = ftc.harms[1].growth[0];
+    let growth = growth.unwrap();
+    assert_eq!(group, "position");
+    assert!((growth.value - 2f64.ln()).abs() < 1e-12);
+    assert!(growth.interval.lower > 0.6 && growth.interval.upper < 0.8);
+    let (_, none) = ftc.harms[0].growth[0];
+    let none = none.unwrap().interval;
+    assert!(none.lower < 0.0 && 0.0 < none.upper);
+}
+
+#[test]
+fn without_a_stratum_free_of_faults_the_mildest_is_the_reference() {
+    let campaign = altered(
+        "smoke",
+        &[("[verdict]", "[[strata]]\nfaults = \"each\"\n[verdict]")],
+    );
+    let scores = scores(&campaign, |_, episode| {
+        let fails = episode % 2 == 0;
+        (if fails { Status::Diverged } else { Status::Ok }, 0.01)
+    });
+    for screening in screen(&campaign, &scores) {
+        assert_eq!(&*screening.reference, "sensor smoothed-square");
+        assert_eq!(screening.harms.len(), 1);
+        // A controller that always diverges has errors that are larger by infinitely much.
+        let growth = screening.harms[0].growth[0].1.unwrap();
+        assert_eq!(growth.interval.lower, f64::INFINITY);
+    }
+    // A campaign that is not divided, or has one such stratum, has nothing to compare.
+    let plain = altered("smoke", &[]);
+    assert!(screen(&plain, &scores_of(&plain)).is_empty());
+}
+
+fn scores_of(campaign: &Campaign) -> Scores {
+    scores(campaign, |_, _| (Status::Ok, 0.01))
+}
+
+#[test]
+fn the_stratum_that_is_truly_the_worst_is_rarely_ruled_out() {
+    // Failure rates 0.2 in both strata with faults: either is the worst, and is ruled out where the other is found worse, which
+    // is to happen in 5 % of the campaigns at most. With 0.2 and 0.5 the milder one is ruled out almost always.
+    let campaign = campaign(240);
+    let ruled_out = |rates: [f64; 2], stratum: usize| {
+        let experiments = 2000;
+        let happens = |experiment: u32| {
+            let scores = scores(&campaign, |controller, episode| {
+                let address = Address {
+                    episode: u32::try_from(episode).unwrap(),
+                    stream: Stream::Initial,
+                    entry: 99,
+                    member: experiment,
+                    index: controller as u32,
+                };
+                let rate = *rates.get(episode % 3).unwrap_or(&0.0);
+                let fails = address.unit(7) < rate;
+                (if fails { Status::Exceeded } else { Status::Ok }, 0.01)
+            });
+            !screen(&campaign, &scores)[0]
+                .most_failures
+                .contains(&stratum)
+        };
+        let count = (0..experiments).filter(|&k| happens(k)).count();
+        count as f64 / f64::from(experiments)
+    };
+    let wrongly = ruled_out([0.2, 0.2], 0);
+    println!("ruled out wrongly: {wrongly}");
+    // Three standard errors of 5 % are 1.5 points; Wilson's intervals err a little more than they say at such rates.
+    assert!(wrongly <= 0.05 + 0.015 + 0.005, "{wrongly}");
+    assert!(ruled_out([0.2, 0.5], 0) > 0.95);
+}

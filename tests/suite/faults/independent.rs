@@ -1,0 +1,319 @@
+//! What the past does within a step: a loop of one axis from plain formulas, in double precision, with the delays, holds and
+//! limits of rate spelled out for every stage.
+
+use super::{AMPLITUDE_M, DRAG_N_S_M, FREQUENCY_RAD_S, MASS_KG, STEP_S, X, campaign, flight};
+use urts_mc::gains::GainSet;
+use urts_mc::synthesis::LoopGains;
+
+const ONSET: usize = 150;
+const STEPS: usize = 500;
+
+/// What is between the controller and the plant, as its definition says.
+#[derive(Clone, Copy, Default)]
+struct Between {
+    /// Largest change of the command, N/s.
+    rate_n_s: Option<f64>,
+    /// Steps by which the command is late, and since when.
+    command_late: Option<(usize, usize)>,
+    /// Steps by which the measurement is late.
+    measurement_late: Option<usize>,
+    /// Steps for which the measurement is frozen.
+    frozen: Option<usize>,
+    /// By what share it is too large, and since when.
+    scale: Option<(f64, usize)>,
+    /// Whether the integral is that of the measurement.
+    measured_integral: bool,
+    /// Steps for which a sampled controller holds its command.
+    hold: Option<usize>,
+}
+
+/// What was at the start of each step.
+#[derive(Default)]
+struct Past {
+    wanted: Vec<f64>,
+    command: Vec<f64>,
+    told: Vec<f64>,
+    measured: Vec<[f64; 2]>,
+}
+
+/// A moment of step `step`: 0 at its start, 1 half a step later, 2 at its end.
+#[derive(Clone, Copy)]
+struct Moment {
+    step: usize,
+    half: usize,
+}
+
+fn reference(t_s: f64) -> [f64; 3] {
+    let (w, phase) = (FREQUENCY_RAD_S, FREQUENCY_RAD_S * t_s);
+    [
+        AMPLITUDE_M * phase.sin(),
+        AMPLITUDE_M * w * phase.cos(),
+        -AMPLITUDE_M * w * w * phase.sin(),
+    ]
+}
+
+/// Between two samples, on the line that joins them.
+fn on_the_line(from: f64, to: f64, half: usize) -> f64 {
+    from + (to - from) * half as f64 / 2.0
+}
+
+impl Between {
+    fn command(&self, at: Moment, wanted: f64, past: &Past) -> f64 {
+        let Moment { step, half } = at;
+        if step == 0 && half == 0 {
+            return wanted;
+        }
+        let mut u = wanted;
+        if let Some((late, since)) = self.command_late
+            && step >= since.max(1)
+        {
+            let sample = |step: usize| past.wanted[step.saturating_sub(late)];
+            u = on_the_line(sample(step), sample(step + 1), half);
+        }
+        if let Some(rate_n_s) = self.rate_n_s
+            && step >= ONSET
+        {
+            // At the start as far from the last step's start as one step allows; then from there.
+            let (from, steps) = if half == 0 {
+                (past.command[step - 1], 1.0)
+            } else {
+                (past.command[step], half as f64 / 2.0)
+            };
+            let reach = rate_n_s * STEP_S * steps;
+            u = u.clamp(from - reach, from + reach);
+        }
+        if let Some(hold) = self.hold
+            && (half > 0 || !step.is_multiple_of(hold))
+        {
+            u = past.command[step - step % hold];
+        }
+        u
+    }
+
+    fn told(&self, at: Moment, feedback: f64, past: &Past) -> f64 {
+        match self.hold {
+            Some(hold) if at.half > 0 || !at.step.is_multiple_of(hold) => {
+                past.told[at.step - at.step % hold]
+            }
+            _ => feedback,
+        }
+    }
+
+    fn measured(&self, at: Moment, motion: [f64; 2], past: &Past) -> [f64; 2] {
+        let Moment { step, half } = at;
+        let mut seen = motion;
+        if let Some((scale, since)) = self.scale
+            && step >= since
+        {
+            seen = seen.map(|value| value * (1.0 + scale));
+        }
+        if let Some(late) = self.measurement_late
+            && step >= ONSET
+        {
+            let [from, to] = [past.measured[step - late], past.measured[step + 1 - late]];
+            seen = [0, 1].map(|k| on_the_line(from[k], to[k], half));
+        }
+        if let Some(frozen) = self.frozen
+            && (ONSET..ONSET + frozen).contains(&step)
+        {
+            seen = past.measured[ONSET - 1];
+        }
+        seen
+    }
+}
+
+type State = [f64; 6];
+
+/// int e, e, e' and the estimates of a PID, at every step.
+fn simulate(gains: &LoopGains, between: Between) -> Vec<State> {
+    let mut past = Past::default();
+    let e0 = 0.05;
+    let [r, v, _] = reference(0.0);
+    let at_start = Moment { step: 0, half: 0 };
+    let [seen, seen_rate] = between.measured(at_start, [r + e0, v], &past);
+    let mut state = [0.0, e0, 0.0, 0.0, seen - r, seen_rate - v];
+    let mut states = vec![state];
+    for step in 0..STEPS {
+        let mut slopes: Vec<State> = Vec::new();
+        for (stage, half) in [0, 1, 1, 2].into_iter().enumerate() {
+            let ahead = [0.0, 0.5, 0.5, 1.0][stage] * STEP_S;
+            let point: State = std::array::from_fn(|k| match slopes.last() {
+                Some(slope) => state[k] + ahead * slope[k],
+                None => state[k],
+            });
+            let at = Moment { step, half };
+            let [r, v, a] = reference((step as f64 + half as f64 / 2.0) * STEP_S);
+            let [integral, e, rate, integral_hat, e_hat, rate_hat] = point;
+            let feedback = gains.k[0] * integral_hat + gains.k[1] * e_hat + gains.k[2] * rate_hat;
+            let told = between.told(at, feedback, &past);
+            let wanted = MASS_KG * (a + told) + DRAG_N_S_M * v;
+            let command = between.command(at, wanted, &past);
+            let motion = [r + e, v + rate];
+            if stage == 0 {
+                let seen = between.measured(at, motion, &past);
+                past.wanted.push(wanted);
+                past.command.push(command);
+                past.told.push(told);
+                // What a delay keeps is what goes into it: no test here has two of them.
+                past.measured.push(if between.frozen.is_some() {
+                    seen
+                } else {
+                    motion
+                });
+            }
+            let [seen, seen_rate] = between.measured(at, motion, &past);
+            let innovation = [
+                integral - integral_hat,
+                seen - r - e_hat,
+                seen_rate - v - rate_hat,
+            ];
+            let injected = |row: usize, base: f64| {
+                base - (0..3).map(|k| gains.l[row][k] * innovation[k]).sum::<f64>()
+            };
+            slopes.push([
+                if between.measured_integral {
+                    seen - r
+                } else {
+                    e
+                },
+                rate,
+                (command - DRAG_N_S_M * motion[1]) / MASS_KG - a,
+                injected(0, e_hat),
+                injected(1, rate_hat),
+                injected(2, told),
+            ]);
+        }
+        for k in 0..6 {
+            let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][k]);
+            state[k] += STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        states.push(state);
+    }
+    states
+}
+
+/// The largest difference of e between a flight and the formulas, m.
+fn difference(more: &str, between: Between) -> f64 {
+    let campaign = campaign(more);
+    let gains = GainSet::obtain(&campaign).unwrap().loops()[0][0];
+    let states = simulate(&gains, between);
+    let flown = flight(&campaign);
+    assert_eq!(states.len(), flown.len());
+    let both = flown.iter().zip(&states);
+    both.map(|(agents, state)| (agents[0][X].e - state[1]).abs())
+        .fold(0.0, f64::max)
+}
+
+fn fault(target: &str, kind: &str, more: &str) -> String {
+    format!(
+        "[[fault]]\ntarget = \"{target}\"\nkind = \"{kind}\"\nchannels = [1]\nonset_s = 0.3\n{more}\n"
+    )
+}
+
+/// Holds a flight against the formulas, and against those without what is between: the fault must matter.
+#[track_caller]
+fn holds(more: &str, between: Between) {
+    let agrees = difference(more, between);
+    // Sums of some hundred newtons over 500 steps of a stable loop, in double precision.
+    assert!(agrees < 1e-11, "{agrees:e} m");
+    let blind = difference(more, Between::default());
+    assert!(
+        blind > 1e-6,
+        "without it the formulas differ by {blind:e} m only"
+    );
+}
+
+#[test]
+fn val_a_loop_without_faults_follows_the_formulas() {
+    assert!(difference("", Between::default()) < 1e-11);
+}
+
+#[test]
+fn val_a_limited_rate_holds_within_the_step() {
+    holds(
+        &fault("actuator", "rate-limit", "rate = 11.0"),
+        Between {
+            rate_n_s: Some(11.0),
+            ..Between::default()
+        },
+    );
+}
+
+#[test]
+fn val_delays_join_their_samples_by_lines() {
+    let late = Between {
+        command_late: Some((4, ONSET)),
+        ..Between::default()
+    };
+    holds(&fault("actuator", "delay", "delay_s = 0.008"), late);
+    // One step later is another loop.
+    assert!(difference(&fault("actuator", "delay", "delay_s = 0.010"), late) > 1e-6);
+    holds(
+        &fault("sensor", "delay", "delay_s = 0.006"),
+        Between {
+            measurement_late: Some(3),
+            ..Between::default()
+        },
+    );
+}
+
+#[test]
+fn val_a_frozen_and_a_scaled_sensor_show_position_and_rate() {
+    holds(
+        &fault("sensor", "freeze", "duration_s = 0.06"),
+        Between {
+            frozen: Some(30),
+            ..Between::default()
+        },
+    );
+    holds(
+        &fault("sensor", "scale", "magnitude = 0.03"),
+        Between {
+            scale: Some((0.03, ONSET)),
+            ..Between::default()
+        },
+    );
+}
+
+#[test]
+fn val_a_measured_integral_is_that_of_the_sensor() {
+    let scaled = fault("sensor", "scale", "magnitude = 0.03").replace("onset_s = 0.3", "");
+    let between = Between {
+        scale: Some((0.03, 0)),
+        ..Between::default()
+    };
+    holds(&scaled, between);
+    let measured = format!("[control]\nintegral = \"sensor\"\n{scaled}");
+    holds(
+        &measured,
+        Between {
+            measured_integral: true,
+            ..between
+        },
+    );
+    assert!(
+        difference(&measured, between) > 1e-6,
+        "the option does something"
+    );
+}
+
+#[test]
+fn val_a_control_delay_is_there_from_the_start() {
+    holds(
+        "[control]\ndelay_s = 0.004\n",
+        Between {
+            command_late: Some((2, 0)),
+            ..Between::default()
+        },
+    );
+}
+
+#[test]
+fn val_a_sampled_controller_holds_its_command() {
+    let held = Between {
+        hold: Some(5),
+        ..Between::default()
+    };
+    holds("[control]\nrate_hz = 100.0\n", held);
+    assert!(difference("[control]\nrate_hz = 125.0\n", held) > 1e-6);
+}

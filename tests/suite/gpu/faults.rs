@@ -1,0 +1,66 @@
+//! Every kind of fault and disturbance at once, on the GPU as on the CPU.
+
+use super::agreement::{CONTRACT, Expected};
+use super::parity::agreement;
+use super::{fly, replaced};
+use crate::common::gpu_or_skip;
+use urts_mc::backend::gpu::Tuning;
+use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
+use urts_mc::gains::GainSet;
+
+/// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.
+fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
+    for kind in FaultKind::ALL {
+        let there = campaign.faults.iter().any(|fault| fault.kind == kind);
+        assert_eq!(there, !missing.contains(&kind), "{}", kind.name());
+    }
+    for link in [Link::Command, Link::Measurement] {
+        let attacks = campaign
+            .faults
+            .iter()
+            .filter(|fault| fault.target == FaultTarget::Network);
+        assert!(attacks.filter(|fault| fault.link == link).count() > 2);
+    }
+}
+
+#[test]
+fn val_all_faults_of_a_uav_agree() {
+    let campaign = replaced("uav_faults", &[]);
+    has_all(&campaign, &[]);
+    for kind in [DisturbanceKind::Gust1Cosine, DisturbanceKind::Dryden] {
+        assert!(campaign.disturbances.iter().any(|one| one.kind == kind));
+    }
+    let Some([double, single]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared > 20 && single.compared > 40);
+}
+
+#[test]
+fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands() {
+    let campaign = replaced("thrust_faults", &[]);
+    has_all(&campaign, &[]);
+    // The contract alone: some of these flights are shaken so much that rounding grows beyond what calm ones show.
+    let Some(gpu) = gpu_or_skip() else { return };
+    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let flown = fly(&gpu, &campaign, &gains, Tuning::default());
+    let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&flown);
+    let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));
+    println!("{}: {summary}", campaign.name);
+    assert!(summary.compared > 4);
+}
+
+#[test]
+fn val_all_faults_of_a_robot_agree() {
+    let campaign = replaced("biped_faults", &[]);
+    let airborne = [
+        FaultKind::Inertia,
+        FaultKind::CenterOfMass,
+        FaultKind::Payload,
+    ];
+    has_all(&campaign, &airborne);
+    let Some([double, single]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared > 4 && single.compared > 10);
+}

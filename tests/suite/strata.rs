@@ -1,0 +1,184 @@
+//! Names of faults, and strata: which episodes meet what.
+
+use crate::common::{altered, tables};
+use urts_mc::backend::cpu::Precision;
+use urts_mc::campaign::{Campaign, StratumFaults};
+use urts_mc::draw::{Episode, draw};
+use urts_mc::ranking::rank;
+
+const SCREENING: &str = r#"[[strata]]
+faults = "each"
+[[strata]]
+faults = []
+[[strata]]
+faults = "all"
+share = 3
+[[strata]]
+name = "both"
+faults = ["lost thrust", "sensor smoothed-square"]
+share = 2
+
+[verdict]"#;
+
+/// The smoke campaign, one stratum per fault, without any, with both, and mixed.
+fn screening(episodes: u32) -> Campaign {
+    altered(
+        "smoke",
+        &[
+            ("[verdict]", SCREENING),
+            (
+                "target = \"actuator\"",
+                "name = \"lost thrust\"\ntarget = \"actuator\"",
+            ),
+            ("episodes = 32", &format!("episodes = {episodes}")),
+        ],
+    )
+}
+
+/// An episode's draw with the faults out of it.
+fn without_occurrence(mut episode: Episode) -> Episode {
+    for fault in episode
+        .agents
+        .iter_mut()
+        .flat_map(|agent| &mut agent.faults)
+    {
+        fault.strikes.clear();
+    }
+    episode
+}
+
+#[test]
+fn faults_without_a_name_have_that_of_target_and_kind_with_a_number_where_it_is_taken() {
+    let fault = |name: &str| {
+        format!("[[fault]]\n{name}\ntarget = \"sensor\"\nkind = \"bias\"\nmagnitude = 0.1\n")
+    };
+    let all = [
+        fault(""),
+        fault(""),
+        fault("name = \"sensor bias 2\""),
+        fault(""),
+        fault("name = \"öl im Getriebe\""),
+    ];
+    let text = all.concat() + "[verdict]";
+    let campaign = altered("smoke", &[("[verdict]", &text)]);
+    let names: Vec<&str> = campaign.faults.iter().map(|fault| &*fault.name).collect();
+    assert_eq!(
+        names,
+        [
+            "actuator loss-of-effectiveness",
+            "sensor smoothed-square",
+            "sensor bias",
+            "sensor bias 3",
+            "sensor bias 2",
+            "sensor bias 4",
+            "öl im Getriebe",
+        ]
+    );
+}
+
+#[test]
+fn episodes_go_round_the_strata_by_their_shares_whatever_the_length() {
+    let campaign = screening(24);
+    let strata = &campaign.strata;
+    let names: Vec<&str> = strata.all().iter().map(|stratum| &*stratum.name).collect();
+    assert_eq!(
+        names,
+        [
+            "lost thrust",
+            "sensor smoothed-square",
+            "none",
+            "mixed",
+            "both"
+        ]
+    );
+    // One to each, a second to those with a share of 2 or more, a third to those of 3.
+    let turn = [0, 1, 2, 3, 4, 3, 4, 3];
+    assert_eq!(strata.turn(), turn.len());
+    for episode in 0..1000 {
+        let index = strata.index(episode).unwrap();
+        assert_eq!(index, turn[episode as usize % turn.len()]);
+        assert_eq!(screening(9).strata.index(episode), Some(index));
+    }
+}
+
+#[test]
+fn a_stratum_decides_which_faults_occur_and_nothing_else() {
+    let campaign = screening(24);
+    let plain = altered("smoke", &[]);
+    let mut mixed = [0, 0];
+    for index in 0..800 {
+        let (episode, undivided) = (draw(&campaign, index), draw(&plain, index));
+        let stratum = campaign.strata.of(index).unwrap();
+        for (agent, drawn) in episode.agents.iter().zip(&undivided.agents) {
+            for (fault, own) in agent.faults.iter().enumerate() {
+                match &stratum.faults {
+                    StratumFaults::Certain(certain) => {
+                        assert_eq!(own.occurs(), certain.contains(&fault));
+                    }
+                    // With its own probability: as where the campaign is not divided.
+                    StratumFaults::Drawn => {
+                        assert_eq!(own, &drawn.faults[fault]);
+                        mixed[0] += u32::from(fault == 0 && own.occurs());
+                        mixed[1] += u32::from(fault == 0);
+                    }
+                }
+            }
+        }
+        // All else is what the same episode meets without strata.
+        assert_eq!(without_occurrence(episode), without_occurrence(undivided));
+    }
+    // Both happen to the fault with a probability of 0.25.
+    assert!(
+        mixed[1] == 900 && (150..300).contains(&mixed[0]),
+        "{mixed:?}"
+    );
+}
+
+#[test]
+fn the_stratum_is_a_column_of_the_episodes_and_of_no_undivided_campaign() {
+    let campaign = screening(24);
+    let frame = tables(&campaign, Precision::F32)
+        .episodes
+        .to_frame()
+        .unwrap();
+    let column = |name: &str| {
+        let column = frame.column(name).unwrap();
+        (0..frame.height())
+            .map(|row| column.get(row).unwrap().to_string())
+            .collect::<Vec<String>>()
+    };
+    for (episode, stratum) in column("episode").iter().zip(column("stratum")) {
+        let own = campaign.strata.of(episode.parse().unwrap()).unwrap();
+        assert_eq!(stratum.trim_matches('"'), &*own.name);
+    }
+    let mut plain = altered("smoke", &[]);
+    plain.episodes = 2;
+    let undivided = tables(&plain, Precision::F32).episodes.to_frame().unwrap();
+    assert!(undivided.column("stratum").is_err());
+}
+
+#[test]
+fn what_a_stratum_makes_certain_is_not_ranked_as_if_it_were_drawn() {
+    let campaign = screening(96);
+    let ranking = rank(&campaign, &tables(&campaign, Precision::F32).scores);
+    let n = |condition: &str| {
+        let found = ranking.iter().find(|own| own.condition == condition);
+        found.map(|own| own.effect.n)
+    };
+    // The mixed stratum has three of eight episodes.
+    assert_eq!(n("fault0_agents"), Some(36));
+    assert!(n("fault0_magnitude").is_some_and(|n| (12..36).contains(&n)));
+    assert_eq!(n("mass_scale"), Some(96));
+    // Without a stratum that draws, the number of struck agents is never left to chance.
+    let certain = altered(
+        "smoke",
+        &[("[verdict]", "[[strata]]\nfaults = \"each\"\n[verdict]")],
+    );
+    let ranking = rank(&certain, &tables(&certain, Precision::F32).scores);
+    assert!(ranking.iter().all(|own| own.condition != "fault0_agents"));
+    assert!(
+        ranking
+            .iter()
+            .any(|own| own.condition == "fault0_magnitude")
+    );
+}
