@@ -1,6 +1,8 @@
 //! Every kind of fault and disturbance against its definition, in flights of one UAV axis that are seen at every step.
 
 mod command;
+mod company;
+mod coupling;
 mod independent;
 mod measurement;
 mod plant;

@@ -1,6 +1,6 @@
 //! The same bits, whatever the batch, the span of steps, the order and the company.
 
-use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed, mixed_biped};
+use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed, mixed_biped, replaced};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{GpuFlyer, Tuning};
@@ -112,5 +112,31 @@ fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
     assert_eq!(fine[0].lines().count(), 601);
     for line in forward[0].lines() {
         assert!(fine[0].lines().any(|own| own == line));
+    }
+}
+
+#[test]
+fn what_faults_remember_outlives_every_span_and_batch() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let brief = [
+        ("duration_s = 1.5", "duration_s = 0.9"),
+        ("uniform = [0.3, 1.0]", "uniform = [0.1, 0.4]"),
+        ("\"ftc\", \"pid\"", "\"pid\""),
+    ];
+    for (name, episodes) in [
+        ("uav_faults", "episodes = 24"),
+        ("thrust_faults", "episodes = 16"),
+    ] {
+        let few = (episodes, "episodes = 5");
+        let campaign = replaced(name, &[&brief[..], &[few]].concat());
+        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+        for (batch, steps) in [(None, Some(7)), (Some(2), Some(1))] {
+            let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+            assert!(
+                again == all,
+                "{name}: batches of {batch:?}, spans of {steps:?}"
+            );
+        }
     }
 }
