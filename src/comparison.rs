@@ -10,15 +10,19 @@
 
 mod paired;
 mod rates;
+mod requirements;
 mod screening;
 mod strata;
 mod tables;
+mod verdict;
 
 pub(crate) use paired::log_ratios;
 pub use paired::{Measured, PairedComparison, Ratio, compare};
-pub use rates::{FailureRate, MetricQuantiles, summarise, unmet};
+pub use rates::{FailureRate, MetricQuantiles, summarise};
+pub use requirements::{RequirementResult, requirements};
 pub use screening::{Harm, Screening, screen};
 pub use tables::{comparison_table, screening_table, summary_table};
+pub use verdict::verdict;
 
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, replicate_mean};

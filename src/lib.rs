@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
-//!          -> comparison, ranking (statistics) -> output
+//!          -> comparison, ranking (statistics) -> output, junit (shortcomings)
 //! ```
 //!
 //! # Invariants
@@ -26,8 +26,10 @@ pub mod cross_check;
 pub mod draw;
 pub mod flight;
 pub mod gains;
+pub mod junit;
 pub mod manifest;
 pub mod model;
+mod nearest;
 pub mod output;
 pub mod ranking;
 pub mod reference;
@@ -35,6 +37,7 @@ pub mod replay;
 pub mod robot;
 pub mod run;
 pub mod sampling;
+pub mod shortcomings;
 pub mod statistics;
 pub mod stop;
 pub mod synthesis;

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     match cli::execute(arguments) {
         Ok(code) => code.into(),
         Err(failure) => {
-            eprintln!("error: {:#}", failure.error);
+            cli::print_error(&failure);
             failure.code.into()
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::backend::cpu::Precision;
 use crate::campaign::Campaign;
+use crate::comparison::RequirementResult;
 use crate::cross_check::CrossCheck;
 use crate::flight::Leg;
 use crate::output::{MANIFEST, OutputError};
@@ -35,6 +36,9 @@ pub struct Manifest {
     pub episodes_asked: u32,
     /// What the campaign's `[stop]` knows at the end, and whether it ended the run.
     pub stopped: Option<Stopped>,
+    /// What became of each `[[require]]`, in the campaign's order; empty in runs of older versions.
+    #[serde(default)]
+    pub requirements: Vec<RequirementResult>,
     /// Why fewer were flown than that, if so.
     pub interrupted: Option<String>,
     /// Number format of the episode loop.

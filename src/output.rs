@@ -113,20 +113,7 @@ impl OutputDir {
                 Err(_) => return Err(taken("files, but no finished run".into())),
             }
         }
-        let absent: Vec<&Path> = path
-            .ancestors()
-            .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
-            .collect();
-        let probe = path.join(".urts-mc-probe");
-        let tried = fs::create_dir_all(path)
-            .and_then(|()| File::create(&probe))
-            .and_then(|_| fs::remove_file(&probe));
-        // The directories are made again when the first file is written; a run that fails before leaves none behind.
-        for dir in absent {
-            // One that could not be made cannot be removed either.
-            let _ = fs::remove_dir(dir);
-        }
-        tried.map_err(unwritable)?;
+        try_to_write(path).map_err(unwritable)?;
         Ok(Self(path.to_path_buf()))
     }
 
@@ -227,12 +214,6 @@ impl OutputDir {
     /// # Errors
     /// If there is something and it cannot be removed.
     pub fn begin(&self) -> Result<(), OutputError> {
-        let remove = |path: PathBuf| match fs::remove_file(&path) {
-            Err(source) if source.kind() != ErrorKind::NotFound => {
-                Err(OutputError::Unwritable { path, source })
-            }
-            _ => Ok(()),
-        };
         remove(self.0.join(MANIFEST))?;
         let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
         for entry in entries {
@@ -245,6 +226,101 @@ impl OutputDir {
             }
         }
         Ok(())
+    }
+}
+
+/// Makes a directory and a file in it, and takes both away again.
+fn try_to_write(dir: &Path) -> std::io::Result<()> {
+    let absent: Vec<&Path> = dir
+        .ancestors()
+        .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
+        .collect();
+    let probe = dir.join(".urts-mc-probe");
+    let tried = fs::create_dir_all(dir)
+        .and_then(|()| File::create(&probe))
+        .and_then(|_| fs::remove_file(&probe));
+    // The directories are made again when the first file is written; a run that fails before leaves none behind.
+    for dir in absent {
+        // One that could not be made cannot be removed either.
+        let _ = fs::remove_dir(dir);
+    }
+    tried
+}
+
+/// A single file that may be written.
+#[derive(Debug, Clone)]
+pub struct OutputFile {
+    dir: OutputDir,
+    name: String,
+}
+
+impl OutputFile {
+    /// Finds out whether a file can be written before any work is done; replaces nothing yet.
+    ///
+    /// # Errors
+    /// If it is a directory or another thing that is no file, or its directory cannot be written. Nothing is left behind then.
+    pub fn claim(path: &Path) -> Result<Self, OutputError> {
+        let unwritable = |source| OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source,
+        };
+        if path.exists() && !path.is_file() {
+            return Err(unwritable(std::io::Error::other("it is no file")));
+        }
+        let name = path
+            .file_name()
+            .ok_or_else(|| unwritable(ErrorKind::InvalidFilename.into()))?
+            .to_string_lossy()
+            .into_owned();
+        let dir = path
+            .parent()
+            .filter(|dir| !dir.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
+        try_to_write(dir).map_err(unwritable)?;
+        Ok(Self {
+            dir: OutputDir::existing(dir),
+            name,
+        })
+    }
+
+    /// Whether the directory that is to hold it exists.
+    #[must_use]
+    pub fn has_place(&self) -> bool {
+        self.dir.path().is_dir()
+    }
+
+    /// Takes away an earlier file of this name, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn remove(&self) -> Result<(), OutputError> {
+        remove(self.dir.path().join(&self.name))
+    }
+
+    /// Writes the file under its name only when it is complete.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, content: &[u8]) -> Result<(), OutputError> {
+        self.dir.write(&self.name, content)
+    }
+
+    /// As [`OutputFile::write`], a table as Parquet.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_parquet(&self, table: &Table) -> Result<(), OutputError> {
+        self.dir.write_parquet(&self.name, table)
+    }
+}
+
+/// Removes a file that may be absent.
+fn remove(path: PathBuf) -> Result<(), OutputError> {
+    match fs::remove_file(&path) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            Err(OutputError::Unwritable { path, source })
+        }
+        _ => Ok(()),
     }
 }
 

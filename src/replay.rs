@@ -9,6 +9,7 @@ use crate::gains::{GainSet, GainsError};
 use crate::manifest::Manifest;
 use crate::model::Shown;
 use crate::model::episode::{AgentOutcome, Snapshot};
+use crate::nearest::did_you_mean;
 use crate::output::{MANIFEST, OutputError};
 use crate::tables::Table;
 use std::path::Path;
@@ -96,8 +97,15 @@ pub fn replay(
         .ok_or_else(|| ReplayError::Usage {
             option: "--controller",
             value: controller.to_string(),
-            limit: "the run has no such controller".to_string(),
-            remedy: format!("use one of {}", campaign.controllers.join(", ")),
+            limit: format!(
+                "the run has no such controller, but {}",
+                campaign.controllers.join(", ")
+            ),
+            remedy: did_you_mean(
+                controller,
+                campaign.controllers.iter().map(String::as_str),
+                "name one of them",
+            ),
         })?;
     let every = interval_steps(&campaign, interval_s)?;
     let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;

@@ -1,8 +1,8 @@
 //! A whole run: gains, episodes, tables, statistics, files.
 
 use crate::backend::gpu::{Gpu, GpuError};
-use crate::campaign::{Agent, Campaign, Requirement};
-use crate::comparison::{self, FailureRate, MetricQuantiles, PairedComparison, Screening};
+use crate::campaign::{Agent, Campaign};
+use crate::comparison::{self, MetricQuantiles, PairedComparison, Screening};
 use crate::cross_check::{CrossCheck, cross_check};
 use crate::flight::{Engine, Flight, FlightError, Settings, fly, open};
 use crate::gains::{GainSet, GainsError};
@@ -47,7 +47,7 @@ pub enum RunError {
 
 /// What a run found.
 #[derive(Debug)]
-pub struct Findings<'a> {
+pub struct Findings {
     /// How every controller fared.
     pub summary: Vec<MetricQuantiles>,
     /// How every pair compares.
@@ -58,10 +58,25 @@ pub struct Findings<'a> {
     pub ranking: Vec<RankedCondition>,
     /// The worst episodes of each controller.
     pub worst: Vec<WorstEpisode>,
-    /// Requirements that do not hold.
-    pub unmet: Vec<(&'a Requirement, FailureRate)>,
-    /// How it was found.
+    /// How it was found, and what became of the requirements.
     pub manifest: Manifest,
+}
+
+/// What a run is at, told while it goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress {
+    /// The gains are synthesized or read.
+    Gains,
+    /// The flight begins.
+    Flight,
+    /// So many more episodes have been flown.
+    Flown(u32),
+    /// Some episodes fly again on the reference.
+    CrossCheck,
+    /// Intervals and tests.
+    Statistics,
+    /// Files.
+    Writing,
 }
 
 /// What a run does beside flying.
@@ -77,19 +92,19 @@ pub struct Extras {
 pub const GPU_CROSS_CHECK: u32 = 32;
 
 /// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the findings
-/// say so.
+/// say so. `told` hears what the run is at.
 ///
 /// # Errors
 /// If gains cannot be had, nothing can be flown, or files cannot be written.
-pub fn run<'a>(
-    campaign: &'a Campaign,
+pub fn run(
+    campaign: &Campaign,
     settings: &Settings,
     out: &OutputDir,
     extras: Extras,
-    done: &(dyn Fn(u32) + Sync),
-) -> Result<Findings<'a>, RunError> {
+    told: &(dyn Fn(Progress) + Sync),
+) -> Result<Findings, RunError> {
     let (gpu, notes) = open(settings)?;
-    run_on(campaign, settings, gpu.as_ref(), notes, out, extras, done)
+    run_on(campaign, settings, gpu.as_ref(), notes, out, extras, told)
 }
 
 /// [`run`] on a device at hand, to test what becomes of a run whose device fails.
@@ -97,22 +112,26 @@ pub fn run<'a>(
 /// # Errors
 /// As [`run`].
 #[doc(hidden)]
-pub fn run_on<'a>(
-    campaign: &'a Campaign,
+pub fn run_on(
+    campaign: &Campaign,
     settings: &Settings,
     gpu: Option<&Gpu>,
     mut notes: Vec<String>,
     out: &OutputDir,
     extras: Extras,
-    done: &(dyn Fn(u32) + Sync),
-) -> Result<Findings<'a>, RunError> {
+    told: &(dyn Fn(Progress) + Sync),
+) -> Result<Findings, RunError> {
     let start = Instant::now();
+    told(Progress::Gains);
     let gains = GainSet::obtain(campaign)?;
     let synthesis_s = start.elapsed().as_secs_f64();
 
-    let flight = fly(campaign, &gains, settings, gpu, done)?;
+    told(Progress::Flight);
+    let flown = |episodes| told(Progress::Flown(episodes));
+    let flight = fly(campaign, &gains, settings, gpu, &flown)?;
     notes.extend(flight.notes.iter().cloned());
     let start = Instant::now();
+    told(Progress::CrossCheck);
     let (cross_check, cross_check_missing) =
         match checked(campaign, &gains, settings, gpu, &flight, extras.cross_check) {
             Ok(check) => (check, None),
@@ -143,9 +162,10 @@ pub fn run_on<'a>(
     }
 
     let start = Instant::now();
+    told(Progress::Statistics);
     let summary = comparison::summarise(campaign, &tables.scores);
     let comparisons = comparison::compare(campaign, &tables.scores);
-    let unmet = comparison::unmet(campaign, &tables.scores);
+    let requirements = comparison::requirements(campaign, &tables.scores);
     let screenings = comparison::screen(campaign, &tables.scores);
     let ranking = flight
         .pool
@@ -154,6 +174,7 @@ pub fn run_on<'a>(
     times.statistics_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
+    told(Progress::Writing);
     out.begin()?;
     let summary_table = comparison::summary_table(campaign, &summary);
     let comparison_table = comparison::comparison_table(campaign, &comparisons);
@@ -196,6 +217,7 @@ pub fn run_on<'a>(
         episodes,
         episodes_asked: campaign.episodes,
         stopped: watch.found(campaign),
+        requirements,
         interrupted: interrupted.map(|error| error.to_string()),
         precision: settings.precision,
         legs,
@@ -211,7 +233,6 @@ pub fn run_on<'a>(
         screenings,
         ranking,
         worst,
-        unmet,
         manifest,
     })
 }

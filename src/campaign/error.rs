@@ -1,5 +1,6 @@
 //! What can be wrong with a campaign file.
 
+use crate::nearest::nearest;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
@@ -103,22 +104,6 @@ fn nearest_known(message: &str) -> Option<&str> {
     }
     let mut quoted = message.split('`').skip(1).step_by(2);
     nearest(quoted.next()?, quoted)
-}
-
-/// The known name that is nearest to an unknown one, if it is near.
-pub(super) fn nearest<'a>(
-    unknown: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
-    known
-        .into_iter()
-        .map(|known| {
-            let similarity = strsim::normalized_damerau_levenshtein(unknown, known);
-            (similarity, known)
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(similarity, _)| *similarity >= 0.5)
-        .map(|(_, known)| known)
 }
 
 /// The line of a key such as `fault[1].agents[0].std` in the text of a campaign; that of the innermost table or list around

@@ -2,7 +2,7 @@
 
 use super::strata::{Part, parts, replicates};
 use super::{LEVEL, Layout, over_replicates};
-use crate::campaign::{Campaign, ChannelGroup, Requirement};
+use crate::campaign::{Campaign, ChannelGroup};
 use crate::sampling::{Method, allows};
 use crate::statistics::{
     Interval, clopper_pearson_upper, quantile, quantile_interval, sequential_interval,
@@ -152,24 +152,4 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
         }
     }
     rows
-}
-
-/// The requirements that do not hold, each with the failure rate that it is about.
-#[must_use]
-pub fn unmet<'a>(campaign: &'a Campaign, scores: &Scores) -> Vec<(&'a Requirement, FailureRate)> {
-    let parts = parts(campaign, scores);
-    let of_requirement = |requirement: &'a Requirement| {
-        let part = parts.iter().find(|part| part.name == requirement.stratum)?;
-        let mut controllers = campaign.controllers.iter();
-        let controller = controllers.position(|name| *name == requirement.controller)?;
-        let rate = FailureRate::of(campaign, scores, controller, part);
-        // A campaign whose design gives no bound has no requirements.
-        let proved = rate.upper_95? <= requirement.failure_rate_upper_95;
-        (!proved).then_some((requirement, rate))
-    };
-    campaign
-        .requirements
-        .iter()
-        .filter_map(of_requirement)
-        .collect()
 }

@@ -1,6 +1,7 @@
 //! What inequality (24) says about flights.
 
 use super::line;
+use super::style::{bad, judged};
 use urts_mc::attenuation::{Attenuations, GroupAttenuation};
 
 /// What stands in the lines of the channels of a replay behind their errors, where (24) applies to some.
@@ -22,11 +23,7 @@ pub(crate) fn of_channel(found: &Attenuations, agent: usize, channel: usize) -> 
             "  {:>9.4}  {:>9.4}  {}",
             attenuation.level(),
             attenuation.certified,
-            if attenuation.holds() {
-                "holds"
-            } else {
-                "FAILS"
-            }
+            judged(attenuation.holds(), "holds", "FAILS")
         ),
         Err(_) => "  not applicable".to_string(),
     }
@@ -65,7 +62,7 @@ pub(crate) fn groups(groups: &[GroupAttenuation]) -> String {
             (Some(largest), Some(certified)) => {
                 let holds = match group.violated {
                     0 => "(24) holds in all".to_string(),
-                    violated => format!("(24) FAILS in {violated}"),
+                    violated => format!("(24) {} in {violated}", bad("FAILS")),
                 };
                 format!("at most {largest:.4}, certified {certified:.4}; {holds} ({of})")
             }

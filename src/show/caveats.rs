@@ -7,7 +7,7 @@ use urts_mc::run::Findings;
 use urts_mc::stop::Stopped;
 
 /// A sentence for each thing that makes a run's statistics other than usual; nothing where nothing does.
-pub(super) fn caveats(campaign: &Campaign, findings: &Findings<'_>) -> String {
+pub(super) fn caveats(campaign: &Campaign, findings: &Findings) -> String {
     let mut text = String::new();
     if let Some(replicates) = campaign.sampling.replicates() {
         line(&mut text, &of_design(campaign, replicates));

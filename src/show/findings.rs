@@ -1,7 +1,9 @@
 //! What a run found, for people.
 
 use super::caveats::caveats;
+use super::conclusion::{in_short, requirements};
 use super::screening::strata;
+use super::style::heading;
 use super::{attenuation, line};
 use std::path::Path;
 use urts_mc::campaign::{ALL, Campaign};
@@ -23,7 +25,7 @@ const STRONGEST: usize = 3;
 const SURE: f64 = 0.05;
 
 /// The findings of a run at a glance.
-pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path) -> String {
+pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
     let mut text = String::new();
     let manifest = &findings.manifest;
     let precision = format!("{:?}", manifest.precision).to_lowercase();
@@ -31,9 +33,9 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     line(
         &mut text,
         &format!(
-            "{}: {} episodes x {} {}, seed {}, {precision} on {}, {:.1} s of flying",
-            campaign.name,
-            manifest.episodes,
+            "{}: {} x {} {}, seed {}, {precision} on {}, {:.1} s of flying",
+            heading(&campaign.name),
+            counted(manifest.episodes),
             campaign.team,
             campaign.agent.noun(campaign.team),
             campaign.seed,
@@ -51,9 +53,10 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     line(
         &mut text,
         &match campaign.team {
-            1 => "\nfailures".to_string(),
+            1 => format!("\n{}", heading("failures")),
             _ => format!(
-                "\nfailures (an episode fails with any of its {})",
+                "\n{} (an episode fails with any of its {})",
+                heading("failures"),
                 campaign.agent.plural()
             ),
         },
@@ -99,7 +102,10 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     text.push_str(&strata(campaign, findings));
     line(
         &mut text,
-        "\nRMS error from settle_s on, median [95 % interval] and 95th percentile over the episodes",
+        &format!(
+            "\n{}, median [95 % interval] and 95th percentile over the episodes",
+            heading("RMS error from settle_s on")
+        ),
     );
     let roles: Vec<ChannelRole> = campaign
         .channel_groups()
@@ -142,7 +148,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         line(
             &mut text,
             &format!(
-                "\npair by pair: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
+                "\n{}: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
+                heading("pair by pair"),
                 if campaign.sampling.replicates().is_some() {
                     "t over replicates"
                 } else {
@@ -191,6 +198,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
     }
     text.push_str(&what_matters(campaign, findings));
     text.push_str(&worst(findings, out));
+    text.push_str(&in_short(findings));
+    text.push_str(&requirements(&manifest.requirements));
     let times = manifest.times;
     line(
         &mut text,
@@ -205,6 +214,14 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings<'_>, out: &Path)
         ),
     );
     text
+}
+
+/// So many episodes.
+fn counted(episodes: u32) -> String {
+    match episodes {
+        1 => "1 episode".to_string(),
+        many => format!("{many} episodes"),
+    }
 }
 
 /// What flew some episodes.
@@ -236,7 +253,7 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
 }
 
 /// What raises failures and errors of each controller, as far as it is sure.
-fn what_matters(campaign: &Campaign, findings: &Findings<'_>) -> String {
+fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
     let sure: Vec<&RankedCondition> = findings
         .ranking
         .iter()
@@ -249,7 +266,10 @@ fn what_matters(campaign: &Campaign, findings: &Findings<'_>) -> String {
     }
     line(
         &mut text,
-        "\nwhat matters: rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
+        &format!(
+            "\n{}: rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
+            heading("what matters")
+        ),
     );
     for same in sure.chunk_by(|a, b| a.target == b.target) {
         let target = &same[0].target;
@@ -275,11 +295,14 @@ fn what_matters(campaign: &Campaign, findings: &Findings<'_>) -> String {
 }
 
 /// The worst episode of each controller, and how to see it.
-fn worst(findings: &Findings<'_>, out: &Path) -> String {
+fn worst(findings: &Findings, out: &Path) -> String {
     let mut text = String::new();
     line(
         &mut text,
-        "\nworst episode of each controller (worst.csv has ten)",
+        &format!(
+            "\n{} (worst.csv has ten)",
+            heading("worst episode of each controller")
+        ),
     );
     for worst in findings.worst.iter().filter(|worst| worst.rank == 1) {
         line(
@@ -331,7 +354,9 @@ fn ratio_text(ratio: &Ratio) -> String {
     });
     match over_replicates.or(ratio.log_ratio) {
         Some(Measured { value, interval }) => {
-            let interval = interval.map_or("[-]".to_string(), |Interval { lower, upper }| {
+            // Of a few episodes every ratio may be the median.
+            let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
+            let interval = known.map_or("[-]".to_string(), |Interval { lower, upper }| {
                 format!("[{}, {}]", times(lower), times(upper))
             });
             format!("{:>8} {interval:<19}{wins}", times(value))
@@ -369,13 +394,18 @@ fn failures_text(comparison: &PairedComparison) -> String {
         failures.only_b,
         failures.both,
         comparison.mid_p.map_or(String::new(), |mid_p| format!(
-            ", McNemar mid-p {mid_p:.2e}"
+            ", McNemar mid-p {}",
+            if mid_p < 0.001 {
+                format!("{mid_p:.1e}")
+            } else {
+                format!("{mid_p:.3}")
+            }
         )),
     )
 }
 
 /// What the intervals of failure rates are.
-fn kind_of_interval(campaign: &Campaign) -> &'static str {
+pub(super) fn kind_of_interval(campaign: &Campaign) -> &'static str {
     if campaign.sampling.replicates().is_some() {
         "t 95 %"
     } else if campaign.stop.is_some() {
@@ -386,7 +416,7 @@ fn kind_of_interval(campaign: &Campaign) -> &'static str {
 }
 
 /// The failure rates of all episodes.
-fn rates<'a>(findings: &'a Findings<'_>) -> Vec<&'a FailureRate> {
+fn rates(findings: &Findings) -> Vec<&FailureRate> {
     let mut rates: Vec<&FailureRate> = findings
         .summary
         .iter()

@@ -1,12 +1,12 @@
 //! What a run found, for programs.
 
 use serde_json::{Value, json};
-use urts_mc::comparison::{FailureRate, Measured};
+use urts_mc::comparison::{FailureRate, Measured, verdict};
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
 
 /// The findings of a run for programs.
-pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
+pub(crate) fn findings_json(findings: &Findings) -> Value {
     let interval = |interval: Interval| json!([finite(interval.lower), finite(interval.upper)]);
     let estimate = |estimate: Option<Estimate>| {
         estimate.map(|estimate| json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval) }))
@@ -26,6 +26,7 @@ pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
     };
     let growth = |(group, growth): &(&'static str, Option<Estimate>)| json!({ "group": group, "log_growth": estimate(*growth) });
     json!({
+        "verdict": verdict(&findings.summary, &findings.comparisons),
         "manifest": findings.manifest,
         "failures": findings.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
             if rates.last() != Some(&failures) { rates.push(failures); }
@@ -60,13 +61,14 @@ pub(crate) fn findings_json(findings: &Findings<'_>) -> Value {
             "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
             "largest_error_over_limit": finite(worst.excess), "agent": worst.agent, "channel": *worst.channel,
         })).collect::<Vec<_>>(),
-        "unmet_requirements": findings.unmet.iter().map(|(requirement, found)| json!({
-            "controller": requirement.controller, "stratum": *requirement.stratum, "limit": requirement.failure_rate_upper_95, "found": rate(found),
+        "requirements": findings.manifest.requirements.iter().map(|result| json!({
+            "controller": result.controller, "stratum": result.stratum, "limit": result.limit, "upper_95": result.upper_95,
+            "n": result.n, "failed": result.failed, "met": result.is_met(),
         })).collect::<Vec<_>>(),
     })
 }
 
 /// JSON has no infinity: it is written as null, as in the Parquet tables' readers.
-fn finite(value: f64) -> Option<f64> {
+pub(super) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,6 +1,7 @@
 //! Gains and what is known about them.
 
 use super::line;
+use super::style::{heading, judged};
 use urts_mc::campaign::{Campaign, FTC, PID, PID_TUNED};
 use urts_mc::gains::{self, GainSet, built_in};
 use urts_mc::synthesis::{ChannelSynthesis, ControllerGains};
@@ -18,10 +19,8 @@ pub(crate) fn gains(campaign: &Campaign, gains: &GainSet) -> String {
     );
     let names = campaign.channel_groups();
     for controller in &gains.controllers {
-        line(
-            &mut text,
-            &format!("\n{} ({})", controller.name, controller.source),
-        );
+        let title = heading(&controller.name);
+        line(&mut text, &format!("\n{title} ({})", controller.source));
         // Groups with the same gains are said once.
         let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
         for (index, (name, own)) in names.iter().zip(&controller.groups).enumerate() {
@@ -48,7 +47,7 @@ pub(crate) fn gains(campaign: &Campaign, gains: &GainSet) -> String {
 pub(crate) fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
     let mut text = String::new();
     for name in [FTC, PID, PID_TUNED] {
-        line(&mut text, &format!("{name}, {role}"));
+        line(&mut text, &heading(&format!("{name}, {role}")));
         let (gains, findings) = built_in(synthesis, name);
         channel(&mut text, gains, Some(&findings));
     }
@@ -131,7 +130,7 @@ fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&gains::
         );
     }
     for check in &findings.checks {
-        let sign = if check.passed { "ok" } else { "FAILED" };
+        let sign = judged(check.passed, "ok", "FAILED");
         line(
             text,
             &format!(

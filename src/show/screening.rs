@@ -1,8 +1,10 @@
 //! What each stratum does to each controller, in a table and in words.
 
+use super::findings::kind_of_interval;
 use super::line;
+use super::style::heading;
 use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{FailureRate, Screening};
+use urts_mc::comparison::{FailureRate, Harm, Screening};
 use urts_mc::run::Findings;
 use urts_mc::statistics::Estimate;
 
@@ -10,7 +12,7 @@ use urts_mc::statistics::Estimate;
 const MOST_NAMES: usize = 3;
 
 /// The strata of a run; nothing of a campaign without.
-pub(super) fn strata(campaign: &Campaign, findings: &Findings<'_>) -> String {
+pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
     let mut text = String::new();
     let strata = campaign.strata.all();
     if strata.is_empty() {
@@ -18,10 +20,8 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings<'_>) -> String {
     }
     let widths = strata.iter().map(|stratum| stratum.name.chars().count());
     let width = widths.max().unwrap_or(0).max(8);
-    let mut head = format!(
-        "\nfailure rates by stratum [Wilson 95 %]\n  {:<width$} {:>6}",
-        "stratum", "n"
-    );
+    let title = format!("failure rates by stratum [{}]", kind_of_interval(campaign));
+    let mut head = format!("\n{}\n  {:<width$} {:>6}", heading(&title), "stratum", "n");
     for controller in &campaign.controllers {
         head.push_str(&format!("  {controller:<24}"));
     }
@@ -44,13 +44,11 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings<'_>) -> String {
         line(&mut text, cells.trim_end());
     }
     if let Some(first) = findings.screenings.first() {
-        line(
-            &mut text,
-            &format!(
-                "\nwhich fault hurts most, against the stratum {:?} [95 %]",
-                first.reference
-            ),
+        let title = format!(
+            "which fault hurts most, against the stratum {:?} [95 %]",
+            first.reference
         );
+        line(&mut text, &format!("\n{}", heading(&title)));
     }
     for screening in &findings.screenings {
         // Without a stratum that has no faults, each controller has a reference of its own.
@@ -127,6 +125,11 @@ fn by_growth(screening: &Screening) -> Vec<String> {
     let of_group = |(group, most): (usize, &Vec<usize>)| {
         let top = &screening.harms[*most.first()?];
         let (name, growth) = top.growth.get(group)?;
+        let known = |harm: &Harm| harm.growth.get(group).is_some_and(|own| own.1.is_some());
+        if !screening.harms.iter().any(known) {
+            let too_few = "too few episodes in each stratum to tell which fault makes it grow most";
+            return Some(format!("RMS error, {name}: {too_few}"));
+        }
         Some(format!(
             "RMS error, {name}, grows most with {:?}: {}{}",
             top.stratum,

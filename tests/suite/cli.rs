@@ -5,8 +5,11 @@ mod bipeds;
 mod campaign_files;
 mod campaign_plans;
 mod gains;
+mod help;
+mod junit;
 mod output;
 mod results;
+mod terminal;
 mod usage;
 
 use crate::common::repository;

@@ -1,8 +1,10 @@
 //! What is said of each stratum, against numbers worked out by hand.
 
 use crate::common::altered;
-use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{compare, comparison_table, screen, summarise, summary_table, unmet};
+use urts_mc::campaign::{Campaign, Strata};
+use urts_mc::comparison::{
+    compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
+};
 use urts_mc::model::rng::{Address, Stream};
 use urts_mc::tables::{Scores, Status};
 
@@ -138,14 +140,25 @@ fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
         32
     );
     // Of 10 without failure the bound is 1 - 0.05^(1/10) = 0.26, of 2 in 30 it is 0.20.
-    assert!(unmet(&campaign, &scores).is_empty());
+    let results = requirements(&campaign, &scores);
+    assert_eq!(results.len(), 2);
+    assert!(results.iter().all(|result| result.is_met()), "{results:?}");
     let mut strict = campaign.clone();
     for requirement in &mut strict.requirements {
         requirement.failure_rate_upper_95 = 0.25;
     }
-    let unmet = unmet(&strict, &scores);
-    assert_eq!(unmet.len(), 1);
-    assert_eq!((&*unmet[0].1.stratum, unmet[0].1.n), ("none", 10));
+    let results = requirements(&strict, &scores);
+    let [none, all] = results.as_slice() else {
+        panic!("{results:?}");
+    };
+    assert_eq!(
+        (none.subject(), none.limit),
+        ("ftc in \"none\"".into(), 0.25)
+    );
+    assert_eq!((all.subject(), all.limit), ("ftc".into(), 0.25));
+    assert_eq!((none.is_met(), none.failed, none.n), (false, 0, 10));
+    assert_eq!((all.is_met(), all.failed, all.n), (true, 2, 30));
+    assert!((none.upper_95 - (1.0 - 0.05_f64.powf(0.1))).abs() < 1e-9);
 }
 
 #[test]
@@ -249,4 +262,125 @@ fn the_stratum_that_is_truly_the_worst_is_rarely_ruled_out() {
     // Three standard errors of 5 % are 1.5 points; Wilson's intervals err a little more than they say at such rates.
     assert!(wrongly <= 0.05 + 0.015 + 0.005, "{wrongly}");
     assert!(ruled_out([0.2, 0.5], 0) > 0.95);
+}
+
+/// What is said of 30 episodes in which the controllers fail so often, and in which their errors have this ratio (PID to FTC).
+fn said(failures: [usize; 2], ratio: f64) -> String {
+    let campaign = campaign(30);
+    let scores = scores(&campaign, |controller, episode| {
+        let status = match episode < failures[controller] {
+            true => Status::Exceeded,
+            false => Status::Ok,
+        };
+        (status, 0.01 * [1.0, ratio][controller])
+    });
+    let sentences = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores));
+    assert_eq!(sentences.len(), 1, "{sentences:?}");
+    sentences[0].clone()
+}
+
+#[test]
+fn the_verdict_says_who_is_better_and_only_where_an_interval_leaves_no_doubt() {
+    for (failures, ratio, words) in [
+        (
+            [0, 15],
+            3.0,
+            &[
+                "ftc does better than pid: it fails in 0.0 % of the episodes, the other in 50.0 % (-50.0 points [",
+                "in the median its RMS error is 3.00 times smaller [3.00, 3.00] in position and 3.00",
+            ] as &[_],
+        ),
+        (
+            [15, 0],
+            0.25,
+            &[
+                "ftc does worse than pid: ",
+                "4.00 times larger [4.00, 4.00] in attitude",
+            ],
+        ),
+        (
+            [15, 0],
+            12.0,
+            &[
+                "ftc follows more closely than pid, but fails more often: ",
+                "12.0 times smaller",
+            ],
+        ),
+        (
+            [0, 15],
+            0.5,
+            &[
+                "ftc fails less often than pid, but follows less closely: ",
+                "2.00 times larger",
+            ],
+        ),
+        // One failure more in 30 is nothing, and equal errors are not different.
+        (
+            [1, 2],
+            1.0,
+            &[
+                "30 episodes do not tell ftc and pid apart: ",
+                "the other in 6.7 % (-3.3 points [",
+                "), no clear difference; ",
+                "not clearly different in position and not clearly different in attitude",
+            ],
+        ),
+        ([0, 0], 2.0, &["ftc does better than pid: neither fails; "]),
+    ] {
+        let said = said(failures, ratio);
+        for word in words {
+            assert!(said.contains(word), "{word:?} is missing from: {said}");
+        }
+    }
+}
+
+#[test]
+fn the_verdict_on_one_episode_claims_nothing_of_others() {
+    let mut campaign = campaign(3);
+    (campaign.episodes, campaign.strata) = (1, Strata::default());
+    let scores = scores(&campaign, |controller, _| {
+        (
+            [Status::Ok, Status::Exceeded][controller],
+            [0.01, 0.03][controller],
+        )
+    });
+    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores));
+    assert_eq!(
+        said,
+        [
+            "ftc against pid in this one episode, which tells nothing of others: pid fails; the RMS error of ftc is 3.00 times \
+             smaller in position and 3.00 times smaller in attitude"
+        ]
+    );
+}
+
+#[test]
+fn a_single_controller_has_a_verdict_of_its_own() {
+    let mut campaign = campaign(30);
+    campaign.controllers.truncate(1);
+    let scores = scores(&campaign, |_, _| (Status::Ok, 0.01));
+    let said = verdict(&summarise(&campaign, &scores), &[]);
+    // 1 - 0.05^(1/30) = 0.0950.
+    assert_eq!(
+        said,
+        ["ftc fails in 0 of 30 episodes: its failure rate is below 9.50 %"]
+    );
+}
+
+#[test]
+fn a_diverged_half_makes_an_error_smaller_beyond_measure() {
+    let campaign = campaign(30);
+    let scores = scores(&campaign, |controller, episode| {
+        match controller == 1 && episode % 10 < 7 {
+            true => (Status::Diverged, f64::NAN),
+            false => (Status::Ok, 0.01),
+        }
+    });
+    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    assert!(
+        said.contains("smaller beyond measure [")
+            && said.contains(", inf], as a diverged flight counts, in position"),
+        "{said}"
+    );
+    assert!(!said.to_lowercase().contains("nan"), "{said}");
 }

@@ -1,6 +1,7 @@
 //! Flights whose GPU fails: what is kept, what is said, what the CPU takes over.
 
 use crate::common::{altered, gpu_or_skip};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{Gpu, GpuError, Tuning};
@@ -10,7 +11,7 @@ use urts_mc::flight::{Backend, Engine, Flight, FlightError, Settings, fly};
 use urts_mc::gains::GainSet;
 use urts_mc::manifest::Manifest;
 use urts_mc::output::OutputDir;
-use urts_mc::run::{Extras, run_on};
+use urts_mc::run::{Extras, Progress, run_on};
 
 /// 24 short episodes.
 fn short() -> Campaign {
@@ -123,8 +124,10 @@ fn a_gpu_that_is_lost_ends_the_run_that_asked_for_it_and_the_finished_batches_ar
             csv: true,
             cross_check: None,
         },
-        &|episodes| {
-            if told.fetch_add(episodes, Ordering::Relaxed) + episodes == 16 {
+        &|at| {
+            if let Progress::Flown(episodes) = at
+                && told.fetch_add(episodes, Ordering::Relaxed) + episodes == 16
+            {
                 gpu.destroy();
             }
         },
@@ -159,8 +162,9 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
             cross_check: Some(0),
         };
         told.store(0, Ordering::Relaxed);
-        run_on(&campaign, &settings, gpu, Vec::new(), &out, extras, &|n| {
-            if told.fetch_add(n, Ordering::Relaxed) + n >= lost_after
+        run_on(&campaign, &settings, gpu, Vec::new(), &out, extras, &|at| {
+            if let Progress::Flown(n) = at
+                && told.fetch_add(n, Ordering::Relaxed) + n >= lost_after
                 && let Some(gpu) = gpu
             {
                 gpu.destroy();
@@ -213,5 +217,40 @@ fn a_gpu_that_flies_nothing_is_an_error_unless_the_cpu_may_fly() {
         flight.notes[0].contains("after 0 of 24"),
         "{:?}",
         flight.notes
+    );
+}
+
+#[test]
+fn a_run_tells_its_phases_in_order_and_every_episode_once() {
+    let campaign = short();
+    let dir = tempfile::tempdir().unwrap();
+    let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
+    let told = Mutex::new(Vec::new());
+    run_on(
+        &campaign,
+        &Settings::cpu(Precision::F32),
+        None,
+        Vec::new(),
+        &out,
+        Extras::default(),
+        &|at| told.lock().unwrap().push(at),
+    )
+    .unwrap();
+    let told = told.into_inner().unwrap();
+    let flown = |at: &Progress| match at {
+        Progress::Flown(episodes) => *episodes,
+        _ => 0,
+    };
+    assert_eq!(told.iter().map(flown).sum::<u32>(), campaign.episodes);
+    let (first, rest) = told.split_at(2);
+    assert_eq!(first, [Progress::Gains, Progress::Flight]);
+    let after: Vec<&Progress> = rest.iter().skip_while(|at| flown(at) > 0).collect();
+    assert_eq!(
+        after,
+        [
+            &Progress::CrossCheck,
+            &Progress::Statistics,
+            &Progress::Writing
+        ]
     );
 }

@@ -24,6 +24,7 @@ pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
 pub use device::Gpu;
 pub use flight::{GpuFlyer, GpuTimes, Tuning};
 
+use crate::nearest::did_you_mean;
 use thiserror::Error;
 
 /// Why a GPU cannot fly episodes, or cannot go on.
@@ -40,8 +41,9 @@ pub enum GpuError {
     },
     /// No adapter has this name.
     #[error(
-        "--adapter {name}: no adapter of this name ({}); `urts-mc devices` explains them",
-        listed(found)
+        "--adapter {name}: no adapter of this name ({}); {}",
+        listed(found),
+        named_nearly(name, found)
     )]
     NoSuchAdapter {
         /// The name.
@@ -111,6 +113,16 @@ pub enum GpuError {
         /// What it says.
         reason: String,
     },
+}
+
+/// What to do about an unknown name: a part of a name is enough, so the nearest word is looked for.
+fn named_nearly(name: &str, found: &[String]) -> String {
+    let words = found.iter().flat_map(|name| name.split_whitespace());
+    did_you_mean(
+        &name.to_lowercase(),
+        words,
+        "`urts-mc devices` explains them",
+    )
 }
 
 fn listed(names: &[String]) -> String {

@@ -1,9 +1,10 @@
 //! Names of faults and `[[strata]]`.
 
 use super::super::check::Check;
-use super::super::error::{CampaignError, nearest};
+use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::plan::{ALL, Strata, Stratum, StratumFaults};
+use crate::nearest::did_you_mean;
 use std::sync::Arc;
 
 /// Longest name of a fault or stratum: it heads lines and fills cells.
@@ -175,10 +176,7 @@ impl Check<'_> {
                     let known = faults.iter().position(|name| name.as_ref() == own);
                     let Some(fault) = known else {
                         let all = faults.iter().map(AsRef::as_ref);
-                        let remedy = nearest(own, all).map_or_else(
-                            || "name one of them".to_string(),
-                            |name| format!("did you mean {name:?}?"),
-                        );
+                        let remedy = did_you_mean(own, all, "name one of them");
                         let limit = format!("the campaign's faults are {}", faults.join(", "));
                         return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
                     };

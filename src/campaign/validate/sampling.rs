@@ -2,10 +2,11 @@
 
 use super::super::Requirement;
 use super::super::check::{Bounds, Check};
-use super::super::error::{CampaignError, nearest};
+use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::plan::{ALL, Goal, Sampling, Stop, Strata};
 use crate::draw::MOST_ENTRIES;
+use crate::nearest::did_you_mean;
 use crate::sampling::{Method, allows};
 use std::sync::Arc;
 
@@ -219,9 +220,10 @@ impl Check<'_> {
         if wanted == ALL || names.contains(&wanted) {
             return Ok(wanted.into());
         }
-        let remedy = nearest(wanted, names.iter().copied()).map_or_else(
-            || "name one of them, or remove it".to_string(),
-            |name| format!("did you mean {name:?}?"),
+        let remedy = did_you_mean(
+            wanted,
+            names.iter().copied(),
+            "name one of them, or remove it",
         );
         let limit = match names.as_slice() {
             [] => "the campaign has no [[strata]]".to_string(),
@@ -246,12 +248,13 @@ impl Check<'_> {
             .iter()
             .position(|own| own == name)
             .ok_or_else(|| {
-                self.invalid(
-                    key,
-                    format!("{name:?}"),
-                    &format!("the campaign's controllers are {}", controllers.join(", ")),
+                let remedy = did_you_mean(
+                    name,
+                    controllers.iter().map(String::as_str),
                     "name one of them, or add it to `controllers`",
-                )
+                );
+                let limit = format!("the campaign's controllers are {}", controllers.join(", "));
+                self.invalid(key, format!("{name:?}"), &limit, &remedy)
             })
     }
 

@@ -1,9 +1,10 @@
 //! `[synthesis]` and the controllers that it can give.
 
 use super::super::check::Check;
-use super::super::error::{CampaignError, nearest};
+use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::{Agent, FTC, GainSource, NamedGains, PID, PID_TUNED};
+use crate::nearest::did_you_mean;
 use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
 use std::path::Path;
 
@@ -32,7 +33,11 @@ impl Check<'_> {
                 .collect();
             let name = file.preset.as_deref().unwrap_or_default();
             let limit = format!("the presets of {} are {}", agent.plural(), names.join(", "));
-            let remedy = take(name, known.iter().map(|preset| preset.name()));
+            let remedy = did_you_mean(
+                name,
+                known.iter().map(|preset| preset.name()),
+                "take one of them",
+            );
             return Err(self.invalid("synthesis.preset", format!("{name:?}"), &limit, &remedy));
         };
         let tables = [
@@ -104,7 +109,7 @@ impl Check<'_> {
                 format!("controllers[{at}]"),
                 format!("{:?}", names[at]),
                 &format!("the controllers are {}", known.join(", ")),
-                &take(&names[at], known),
+                &did_you_mean(&names[at], known, "take one of them"),
             ));
         }
         if names.is_empty() || (1..names.len()).any(|k| names[..k].contains(&names[k])) {
@@ -213,11 +218,4 @@ impl Check<'_> {
             other => self.invalid(table, "these weights", &other.to_string(), "change them"),
         }
     }
-}
-
-/// What to do about an unknown name.
-fn take<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(unknown, known).map_or("take one of them".into(), |near| {
-        format!("did you mean {near:?}?")
-    })
 }

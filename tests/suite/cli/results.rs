@@ -73,7 +73,7 @@ fn findings_as_json_are_those_of_the_text_and_of_the_tables() {
     let found = place.json(&["run", "c.toml", "--out", "a", "--json", "--csv"]);
     let text = place.succeeds(&["run", "c.toml", "--out", "b"]);
     assert_eq!(found["manifest"]["episodes"], 3);
-    assert_eq!(found["unmet_requirements"].as_array().unwrap().len(), 0);
+    assert_eq!(found["requirements"].as_array().unwrap().len(), 0);
     let rates = found["failures"].as_array().unwrap();
     for controller in ["ftc", "pid", "pid-tuned"] {
         let all = |rate: &&Value| rate["controller"] == controller && rate["stratum"] == "all";
@@ -210,7 +210,11 @@ fn a_requirement_that_does_not_hold_exits_with_4_after_writing_everything() {
         }
         if json {
             let found: Value = serde_json::from_str(&ended.stdout).unwrap();
-            assert_eq!(found["unmet_requirements"][0]["limit"], 0.02);
+            let result = &found["requirements"][0];
+            assert_eq!(
+                (&result["limit"], &result["met"]),
+                (&0.02.into(), &false.into())
+            );
         } else {
             assert!(ended.stdout.contains("written to out"));
         }

@@ -1,0 +1,251 @@
+//! The command line: commands, their arguments and examples.
+
+use clap::builder::StyledStr;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use std::path::PathBuf;
+
+/// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100, after_help = first_steps())]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad usage or campaign file; 3 synthesis failed;\n\
+4 a [[require]] of the campaign does not hold; 1 anything else.";
+
+/// The examples of a command's help, one a line; a test runs them all.
+fn examples(lines: &[&str]) -> String {
+    let header = anstyle::Style::new().bold().underline();
+    let mut text = format!("{header}Examples:{header:#}");
+    for line in lines {
+        text.push_str("\n  ");
+        text.push_str(line);
+    }
+    text
+}
+
+fn first_steps() -> StyledStr {
+    let examples = examples(&[
+        "urts-mc run campaigns/smoke.toml",
+        "urts-mc replay reports/smoke --episode 9 --controller pid",
+    ]);
+    format!("{examples}\n\n{EXIT_CODES}").into()
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Fly a campaign and write its tables
+    #[command(after_help = examples(&[
+        "urts-mc run campaigns/smoke.toml",
+        "urts-mc run campaigns/uav-paper.toml --episodes 256 --backend cpu --out reports/trial",
+        "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
+    ]))]
+    Run(RunArguments),
+    /// Check a campaign, synthesize its gains and show what would be drawn; flies nothing
+    #[command(after_help = examples(&[
+        "urts-mc check campaigns/uav-paper.toml",
+        "urts-mc check campaigns/uav-paper.toml --episodes 4096 --json",
+    ]))]
+    Check(CheckArguments),
+    /// Show the gains of a campaign: poles, margins, certificate, checks
+    #[command(after_help = examples(&[
+        "urts-mc synthesize campaigns/uav-paper.toml",
+        "urts-mc synthesize --preset biped-paper --json",
+    ]))]
+    Synthesize(SynthesizeArguments),
+    /// Fly one episode of a run again and write its trajectories
+    #[command(after_help = examples(&[
+        "urts-mc replay reports/smoke --episode 9 --controller pid",
+        "urts-mc replay reports/smoke --episode 3 --interval 0.05 --out episode-3.parquet",
+    ]))]
+    Replay(ReplayArguments),
+    /// Tell how many episodes a claim about a failure rate needs
+    #[command(after_help = examples(&[
+        "urts-mc plan --failure-rate 0.01",
+        "urts-mc plan --failure-rate 0.001 --confidence 0.99 --failures 10",
+    ]))]
+    Plan(PlanArguments),
+    /// List the GPUs, and what --backend auto makes of them
+    #[command(after_help = examples(&[
+        "urts-mc devices",
+        "urts-mc devices --json",
+    ]))]
+    Devices(DevicesArguments),
+    /// Print the JSON Schema of the campaign file
+    #[command(after_help = examples(&[
+        "urts-mc schema > campaign.schema.json",
+    ]))]
+    Schema,
+    /// Print a script that completes this program's command line in a shell
+    #[command(after_help = examples(&[
+        "urts-mc completions bash > urts-mc.bash",
+        "urts-mc completions fish",
+    ]))]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Overrides {
+    /// The campaign file
+    pub(crate) campaign: PathBuf,
+    /// Fly this many episodes instead of the campaign's
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) episodes: Option<u32>,
+    /// Use this seed instead of the campaign's
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) seed: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Where to fly: auto takes a hardware GPU if there is one and the CPU otherwise
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) backend: BackendChoice,
+    /// The GPU whose name contains this; the only way to a software one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Number format of the episode loop; f64 is the reference, on the CPU
+    #[arg(long, value_enum, default_value = "f32")]
+    pub(crate) precision: PrecisionChoice,
+    /// Layout of the CPU's single-precision episodes; the result is the same for avx2 and avx512
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) simd: SimdChoice,
+    /// Fly N random episodes again on the CPU in f64 and fail if they differ [default: 32 on a GPU, 0 on the CPU]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) cross_check: Option<u32>,
+    /// Threads; 0 takes all cores. The result does not depend on it
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
+    /// Output directory [default: reports/<name of the campaign>]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write even where the output directory holds something else, and replace the file of --junit
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+    /// Write the episode and channel tables as CSV too
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write a JUnit file for CI systems: a test case for each [[require]], the cross-check and the flight
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
+    /// Print nothing on standard output but what --json asks for, and show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing on standard output but what --json asks for, and show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArguments {
+    /// The failure rate to stay below, between 0 and 1
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = share)]
+    pub(crate) failure_rate: f64,
+    /// How sure the claim is to be, between 0 and 1
+    #[arg(long, default_value_t = 0.95, allow_negative_numbers = true, value_parser = share)]
+    pub(crate) confidence: f64,
+    /// Up to how many failures are listed
+    #[arg(long, default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1000))]
+    pub(crate) failures: u64,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A number between 0 and 1.
+fn share(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_string())?;
+    if 0.0 < number && number < 1.0 {
+        Ok(number)
+    } else {
+        Err("must lie between 0 and 1, such as 0.01 for one percent".to_string())
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DevicesArguments {
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SynthesizeArguments {
+    /// The campaign file
+    #[arg(required_unless_present = "preset")]
+    pub(crate) campaign: Option<PathBuf>,
+    /// Synthesize a preset instead of a campaign's gains
+    #[arg(long, conflicts_with = "campaign", value_parser = ["uav-paper", "uav-physical", "biped-paper"])]
+    pub(crate) preset: Option<String>,
+    /// Print as JSON, in the format of gains.json
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArguments {
+    /// Output directory of the run
+    pub(crate) run: PathBuf,
+    /// Index of the episode, from 0
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) episode: u32,
+    /// The controller
+    #[arg(long, default_value = "ftc")]
+    pub(crate) controller: String,
+    /// Seconds between samples, a multiple of the step [default: 0.01, or as near as the step allows]
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) interval: Option<f64>,
+    /// The Parquet file to write [default: <run>/replay-<episode>-<controller>.parquet]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace the file that --out names
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing on standard output but what --json asks for, and show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BackendChoice {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PrecisionChoice {
+    F32,
+    F64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SimdChoice {
+    Auto,
+    Scalar,
+    Avx2,
+    Avx512,
+}

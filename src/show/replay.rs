@@ -1,0 +1,127 @@
+//! How a replayed episode went, for people and for programs.
+
+use super::findings_json::finite;
+use super::style::{bad, heading};
+use super::{attenuation, line};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+use urts_mc::attenuation::{Attenuation, NotApplicable};
+use urts_mc::model::episode::AgentOutcome;
+use urts_mc::model::metric::ChannelOutcome;
+use urts_mc::replay::Replay;
+use urts_mc::tables::{Status, status};
+
+/// How a replayed episode went.
+pub(crate) fn replay(
+    replay: &Replay,
+    (_, episode, controller): (&Path, u32, &str),
+    path: &Path,
+) -> String {
+    let mut text = String::new();
+    let channels = replay.campaign.channels();
+    let width = channels.iter().map(|name| name.len()).max().unwrap_or(0);
+    line(
+        &mut text,
+        &heading(&format!(
+            "episode {episode} under {controller}: RMS error and largest error from settle_s on{}",
+            attenuation::heading(&replay.attenuations)
+        )),
+    );
+    for (agent, outcome) in replay.outcomes.iter().enumerate() {
+        let ending = match status(&replay.campaign, outcome) {
+            Status::Ok => String::new(),
+            failed => {
+                let limit = match (failed, outcome.failed_step) {
+                    (Status::Exceeded, Some(_)) => " max_error",
+                    (Status::Exceeded, None) => " max_rmse",
+                    _ => "",
+                };
+                let time = failed_at_s(replay, outcome);
+                let at = time.map_or(String::new(), |time| format!(" at {time:.3} s"));
+                format!("  {}{limit}{at}", bad(failed.word()))
+            }
+        };
+        line(&mut text, &format!("  agent {agent}{ending}"));
+        for (channel, (name, metrics)) in channels.iter().zip(&outcome.channels).enumerate() {
+            line(
+                &mut text,
+                &format!(
+                    "    {name:<width$} {:>10.5}  {:>10.5}{}",
+                    metrics.rmse,
+                    metrics.max_abs,
+                    attenuation::of_channel(&replay.attenuations, agent, channel)
+                ),
+            );
+        }
+    }
+    text.push_str(&attenuation::explanation(&replay.attenuations));
+    if let Some(reason) = &replay.stand_in {
+        line(
+            &mut text,
+            &format!(
+                "flown in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
+            ),
+        );
+    }
+    line(
+        &mut text,
+        &format!(
+            "written to {} ({} samples)",
+            path.display(),
+            replay.snapshots.len()
+        ),
+    );
+    text
+}
+
+/// When an agent broke max_error or left the numbers, s.
+fn failed_at_s(replay: &Replay, outcome: &AgentOutcome) -> Option<f64> {
+    let time = &replay.campaign.time;
+    let step = outcome
+        .failed_step
+        .or(outcome.diverged.then_some(time.steps))?;
+    Some(f64::from(step) * time.step_s)
+}
+
+/// What (24) says about a channel.
+type Found = Result<Attenuation, NotApplicable>;
+
+/// [`replay`] for programs.
+pub(crate) fn replay_json(
+    replay: &Replay,
+    (run, episode, controller): (&Path, u32, &str),
+    path: &Path,
+) -> Value {
+    let campaign = &replay.campaign;
+    let agents = replay.outcomes.iter().zip(&replay.attenuations);
+    let of_agent = |(agent, (outcome, found)): (usize, (&AgentOutcome, &Vec<Found>))| {
+        let channels = campaign.channels().iter().zip(&outcome.channels);
+        let of_channel = |((name, metrics), attenuation): (
+            (&Arc<str>, &ChannelOutcome),
+            &Found,
+        )| {
+            json!({
+                "channel": **name,
+                "rmse": finite(metrics.rmse),
+                "max_abs": finite(metrics.max_abs),
+                "attenuation": attenuation.as_ref().ok().map(|found| json!({
+                    "level": finite(found.level()), "certified": finite(found.certified), "holds": found.holds(),
+                })),
+                "attenuation_not_applicable": attenuation.as_ref().err().map(ToString::to_string),
+            })
+        };
+        json!({
+            "agent": agent,
+            "status": status(campaign, outcome).word(),
+            "failed_at_s": failed_at_s(replay, outcome),
+            "channels": channels.zip(found).map(of_channel).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "run": run.display().to_string(), "episode": episode, "controller": controller,
+        "file": path.display().to_string(), "samples": replay.snapshots.len(),
+        "stand_in": replay.stand_in,
+        "agents": agents.enumerate().map(of_agent).collect::<Vec<_>>(),
+    })
+}
