@@ -28,6 +28,7 @@ use urts_mc::gains::GainSet;
 use urts_mc::junit::{junit, junit_of_error};
 use urts_mc::output::{OutputDir, OutputError, OutputFile};
 use urts_mc::replay::replay;
+use urts_mc::report::report;
 use urts_mc::run::{Extras, Findings, RunError, run};
 use urts_mc::shortcomings::{shortcoming, unmet};
 use urts_mc::synthesis::{Preset, synthesize};
@@ -42,6 +43,11 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
         Command::Check(arguments) => check_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
+        Command::Report { run } => {
+            report(&run)?;
+            print(&show::report(&run))?;
+            Ok(Code::Done)
+        }
         Command::Plan(arguments) => plan_command(&arguments),
         Command::Devices(arguments) => devices_command(&arguments),
         Command::Schema => {

@@ -82,12 +82,29 @@ pub fn fault_of(condition: &str) -> Option<(usize, &str)> {
     Some((index.parse().ok()?, rest))
 }
 
-/// A condition in the words of the campaign: with the name of its fault.
+/// A condition in the words of the campaign: with the name of its fault, or the kind of its disturbance.
 #[must_use]
 pub fn title(campaign: &Campaign, condition: &str) -> String {
-    let named = fault_of(condition)
+    let of_fault = fault_of(condition)
         .and_then(|(index, rest)| Some(format!("{} {rest}", campaign.faults.get(index)?.name)));
-    named.unwrap_or_else(|| condition.to_string())
+    of_fault
+        .or_else(|| of_disturbance(campaign, condition))
+        .unwrap_or_else(|| condition.to_string())
+}
+
+fn of_disturbance(campaign: &Campaign, condition: &str) -> Option<String> {
+    let (index, rest) = condition.strip_prefix("disturbance")?.split_once('_')?;
+    let kind = campaign
+        .disturbances
+        .get(index.parse::<usize>().ok()?)?
+        .kind;
+    let of_kind = campaign.disturbances.iter().filter(|own| own.kind == kind);
+    // Two of a kind are told apart by their places in the file.
+    let place = match of_kind.count() {
+        1 => String::new(),
+        _ => format!(" [{index}]"),
+    };
+    Some(format!("{}{place} {rest}", kind.name()))
 }
 
 /// Root mean square; none of nothing.

@@ -6,6 +6,7 @@ use urts_mc::flight::FlightError;
 use urts_mc::gains::GainsError;
 use urts_mc::output::OutputError;
 use urts_mc::replay::ReplayError;
+use urts_mc::report::ReportError;
 use urts_mc::run::RunError;
 
 /// How the program ends.
@@ -96,6 +97,14 @@ fn code_of(error: &anyhow::Error) -> Code {
         Some(ReplayError::Gains(error)) => return of_gains(error),
         Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
         None => {}
+    }
+    let of_report = |error: &ReportError| match error {
+        ReportError::Run(error) => of_output(error),
+        ReportError::Campaign(_) => Code::Usage,
+        ReportError::Gains(error) => of_gains(error),
+    };
+    if let Some(error) = error.downcast_ref() {
+        return of_report(error);
     }
     error
         .downcast_ref()

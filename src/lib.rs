@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
-//!          -> comparison, ranking (statistics) -> output, junit (shortcomings)
+//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report
 //! ```
 //!
 //! # Invariants
@@ -34,6 +34,7 @@ pub mod output;
 pub mod ranking;
 pub mod reference;
 pub mod replay;
+pub mod report;
 pub mod robot;
 pub mod run;
 pub mod sampling;

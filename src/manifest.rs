@@ -1,7 +1,7 @@
 //! The manifest of a run: what it takes to do it again, and what it was done with.
 
 use crate::backend::cpu::Precision;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, CampaignError};
 use crate::comparison::RequirementResult;
 use crate::cross_check::CrossCheck;
 use crate::flight::Leg;
@@ -51,6 +51,9 @@ pub struct Manifest {
     pub cross_check: Option<CrossCheck>,
     /// Why they were not, if they should have been.
     pub cross_check_missing: Option<String>,
+    /// Who does better, a sentence for each opponent of the first controller; empty in runs of older versions.
+    #[serde(default)]
+    pub verdict: Vec<String>,
     /// Wall-clock times.
     pub times: Times,
 }
@@ -93,5 +96,21 @@ impl Manifest {
         let text = std::fs::read_to_string(dir.join(MANIFEST))
             .map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
         serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
+    }
+
+    /// The campaign that was flown, with the run's seed and the number of episodes that was asked for.
+    ///
+    /// # Errors
+    /// If this version does not read the campaign any more.
+    pub fn campaign(&self) -> Result<Campaign, CampaignError> {
+        let mut campaign = Campaign::parse_with_robot(
+            &self.campaign,
+            Path::new(&self.campaign_path),
+            self.robot.as_deref(),
+        )?;
+        campaign.seed = self.seed;
+        // What a design draws belongs to the number of episodes that was asked for.
+        campaign.episodes = self.episodes_asked;
+        Ok(campaign)
     }
 }

@@ -20,6 +20,9 @@ pub const TABLES: [&str; 7] = [
     "worst",
 ];
 
+/// The reports of a run.
+pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
+
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
 /// File name of the manifest, which is written last: a directory that has one holds all episodes that it counts.
@@ -220,8 +223,9 @@ impl OutputDir {
             let name = entry.file_name();
             let name = name.to_string_lossy();
             let replay = name.starts_with("replay-") && name.ends_with(".parquet");
+            let report = REPORTS.contains(&&*name);
             let half = name.starts_with('.') && name.ends_with(".part");
-            if replay || half || is_table(&name) {
+            if replay || report || half || is_table(&name) {
                 remove(entry.path())?;
             }
         }
@@ -337,7 +341,7 @@ fn holds_only_ours(dir: &Path) -> bool {
             .strip_prefix('.')
             .and_then(|name| name.strip_suffix(".part"))
             .unwrap_or(name);
-        is_table(whole) || whole == "gains.json"
+        is_table(whole) || whole == "gains.json" || REPORTS.contains(&whole)
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

@@ -71,14 +71,7 @@ pub fn replay(
     interval_s: Option<f64>,
 ) -> Result<Replay, ReplayError> {
     let manifest = Manifest::read(dir)?;
-    let mut campaign = Campaign::parse_with_robot(
-        &manifest.campaign,
-        Path::new(&manifest.campaign_path),
-        manifest.robot.as_deref(),
-    )?;
-    campaign.seed = manifest.seed;
-    // What a design draws belongs to the number of episodes that was asked for.
-    campaign.episodes = manifest.episodes_asked;
+    let campaign = manifest.campaign()?;
     if episode >= manifest.episodes {
         return Err(ReplayError::Usage {
             option: "--episode",

@@ -9,6 +9,7 @@ use crate::gains::{GainSet, GainsError};
 use crate::manifest::{GIT_REVISION, Manifest, campaign_hash};
 use crate::output::{MANIFEST, OutputDir, OutputError};
 use crate::ranking::{self, RankedCondition, WorstEpisode};
+use crate::report::{ReportError, report};
 use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
@@ -40,6 +41,9 @@ pub enum RunError {
         /// Episodes that it holds.
         earlier: u32,
     },
+    /// The report cannot be made of what was written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
     /// The manifest cannot be encoded.
     #[error("the manifest cannot be encoded")]
     Manifest(#[from] serde_json::Error),
@@ -218,6 +222,7 @@ pub fn run_on(
         episodes_asked: campaign.episodes,
         stopped: watch.found(campaign),
         requirements,
+        verdict: comparison::verdict(&summary, &comparisons),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: settings.precision,
         legs,
@@ -227,6 +232,7 @@ pub fn run_on(
         times,
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
+    report(out.path())?;
     Ok(Findings {
         summary,
         comparisons,

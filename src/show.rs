@@ -23,6 +23,13 @@ pub(crate) use runs::{runs, runs_json};
 pub(crate) use style::BAD;
 
 use std::fmt::Write;
+use std::path::Path;
+use urts_mc::output::REPORTS;
+
+/// Where the report of a run is.
+pub(crate) fn report(dir: &Path) -> String {
+    format!("the report: {}\n", dir.join(REPORTS[0]).display())
+}
 
 fn line(text: &mut String, content: &str) {
     // Writing to a string cannot fail.

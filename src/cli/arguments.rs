@@ -37,7 +37,7 @@ fn first_steps() -> StyledStr {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Fly a campaign and write its tables
+    /// Fly a campaign and write its tables and its report
     #[command(after_help = examples(&[
         "urts-mc run campaigns/smoke.toml",
         "urts-mc run campaigns/uav-paper.toml --episodes 256 --backend cpu --out reports/trial",
@@ -62,6 +62,14 @@ pub(crate) enum Command {
         "urts-mc replay reports/smoke --episode 3 --interval 0.05 --out episode-3.parquet",
     ]))]
     Replay(ReplayArguments),
+    /// Write the report of a run again, from its tables alone
+    #[command(after_help = examples(&[
+        "urts-mc report reports/smoke",
+    ]))]
+    Report {
+        /// Output directory of the run
+        run: PathBuf,
+    },
     /// Tell how many episodes a claim about a failure rate needs
     #[command(after_help = examples(&[
         "urts-mc plan --failure-rate 0.01",

@@ -2,13 +2,13 @@
 
 use super::line;
 use super::style::{heading, judged};
-use urts_mc::comparison::{RequirementResult, verdict};
+use urts_mc::comparison::RequirementResult;
 use urts_mc::run::Findings;
 
 /// Who does better, in a sentence each.
 pub(super) fn in_short(findings: &Findings) -> String {
     let mut text = String::new();
-    let sentences = verdict(&findings.summary, &findings.comparisons);
+    let sentences = &findings.manifest.verdict;
     if !sentences.is_empty() {
         let sure = match findings.manifest.episodes {
             1 => "",

@@ -1,7 +1,7 @@
 //! What a run found, for programs.
 
 use serde_json::{Value, json};
-use urts_mc::comparison::{FailureRate, Measured, verdict};
+use urts_mc::comparison::{FailureRate, Measured};
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
 
@@ -26,7 +26,7 @@ pub(crate) fn findings_json(findings: &Findings) -> Value {
     };
     let growth = |(group, growth): &(&'static str, Option<Estimate>)| json!({ "group": group, "log_growth": estimate(*growth) });
     json!({
-        "verdict": verdict(&findings.summary, &findings.comparisons),
+        "verdict": findings.manifest.verdict,
         "manifest": findings.manifest,
         "failures": findings.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
             if rates.last() != Some(&failures) { rates.push(failures); }

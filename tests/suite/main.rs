@@ -25,6 +25,8 @@
 //! | `lanes` | elementary functions, phases and selections on every lane type |
 //! | `model` | order of the integration, limits, noise, draws |
 //! | `campaigns` | every shipped campaign; what the paper claims |
+//! | `readme` | what the README tells its readers to type |
+//! | `report` | what the report of a run says, and what a browser makes of it |
 //! | `cli` | commands, exit codes and error messages |
 //!
 //! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with ourselves.
@@ -58,6 +60,8 @@ mod leg;
 mod model;
 mod path;
 mod ranking;
+mod readme;
+mod report;
 mod robot;
 mod sampling;
 mod scenarios;

@@ -1,0 +1,71 @@
+//! The report of a run: a page that opens from disk, and the same in Markdown, made of the run's directory alone.
+//!
+//! Evidence (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
+
+mod accuracy;
+mod conditions;
+mod document;
+mod evidence;
+mod gains;
+mod html;
+mod markdown;
+mod outcome;
+mod panel;
+mod provenance;
+mod sheet;
+mod strata;
+mod words;
+
+pub use evidence::ReportError;
+
+use crate::output::{OutputDir, REPORTS};
+use crate::shortcomings::{shortcoming, unmet};
+use document::Document;
+use evidence::Evidence;
+use std::path::Path;
+
+/// Writes `report.html` and `report.md` of the run in a directory.
+///
+/// # Errors
+/// If the directory holds no run, or cannot be written.
+pub fn report(dir: &Path) -> Result<(), ReportError> {
+    let evidence = Evidence::read(dir)?;
+    let document = document(&evidence);
+    let out = OutputDir::existing(dir);
+    let [html, markdown] = REPORTS;
+    out.write(html, html::html(&document).as_bytes())?;
+    out.write(markdown, markdown::markdown(&document).as_bytes())?;
+    Ok(())
+}
+
+fn document(evidence: &Evidence) -> Document {
+    let manifest = &evidence.manifest;
+    let campaign = &evidence.campaign;
+    let wrong = [shortcoming(manifest, &evidence.dir), unmet(manifest)];
+    let sections = [
+        Some(outcome::section(evidence)),
+        Some(accuracy::pairs(evidence)),
+        Some(accuracy::distributions(evidence)),
+        strata::section(evidence),
+        Some(conditions::ranking(evidence)),
+        Some(conditions::worst(evidence)),
+        Some(gains::section(evidence)),
+        Some(conditions::drawn(evidence)),
+        Some(provenance::section(evidence)),
+    ];
+    Document {
+        title: manifest.name.clone(),
+        subtitle: format!(
+            "{} episodes of {} {} over {} s under {}; seed {}",
+            manifest.episodes,
+            campaign.team,
+            campaign.agent.noun(campaign.team),
+            f64::from(campaign.time.steps) * campaign.time.step_s,
+            campaign.controllers.join(", "),
+            manifest.seed
+        ),
+        lead: manifest.verdict.clone(),
+        warnings: wrong.into_iter().flatten().collect(),
+        sections: sections.into_iter().flatten().collect(),
+    }
+}

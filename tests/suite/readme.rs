@@ -1,0 +1,153 @@
+//! What the README tells its readers to type really works.
+
+use crate::common::repository;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+use urts_mc::campaign::Campaign;
+
+/// The README's blocks in a language.
+fn blocks(language: &str) -> Vec<String> {
+    let text = fs::read_to_string(repository("README.md")).unwrap();
+    let opening = format!("\n```{language}\n");
+    let begun = text.split(&opening).skip(1);
+    begun
+        .map(|rest| rest.split("\n```").next().unwrap().to_string())
+        .collect()
+}
+
+/// The lines of the README's shell blocks, without their comments.
+fn commands() -> Vec<String> {
+    let lines = blocks("sh");
+    let lines = lines.iter().flat_map(|block| block.lines());
+    lines
+        .map(|line| line.split(" #").next().unwrap().trim().to_string())
+        .filter(|line| !line.is_empty())
+        .collect()
+}
+
+/// A place that looks like the repository to a command.
+fn place() -> TempDir {
+    let place = TempDir::new().unwrap();
+    let campaigns = place.path().join("campaigns");
+    fs::create_dir(&campaigns).unwrap();
+    fs::create_dir(campaigns.join("robots")).unwrap();
+    for dir in ["campaigns", "campaigns/robots"] {
+        for entry in fs::read_dir(repository(dir)).unwrap() {
+            let entry = entry.unwrap();
+            if entry.path().is_file() {
+                fs::copy(entry.path(), place.path().join(dir).join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    place
+}
+
+fn program(place: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_urts-mc"))
+        .current_dir(place)
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn every_command_of_the_readme_works() {
+    let place = place();
+    let checks = fs::read_to_string(repository(".ci/run")).unwrap();
+    let (mut flown, mut checked) = (0, 0);
+    for command in commands() {
+        let own = command
+            .strip_prefix("cargo run --release --locked -- ")
+            .or_else(|| command.strip_prefix("urts-mc "));
+        if let Some(arguments) = own {
+            let output = program(place.path(), arguments);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{command}: {said}");
+            flown += 1;
+        } else if let Some(file) = command.strip_prefix("cat ") {
+            assert!(place.path().join(file).is_file(), "{command}");
+        } else if command.starts_with("apt-get install") {
+            // What a machine with a GPU needs is installed by those who have one; the package is that of the tests' Vulkan.
+            let package = command.split_whitespace().last().unwrap();
+            let tests = fs::read_to_string(repository("tests/run")).unwrap();
+            assert!(tests.contains(package), "{command}");
+        } else {
+            // Builds and checks are what every change passes.
+            assert!(
+                command == ".ci/run" || checks.contains(&command),
+                "{command}"
+            );
+            checked += 1;
+        }
+    }
+    assert!(flown >= 8 && checked >= 4, "{flown} {checked}");
+    for name in ["report.html", "report.md", "episodes.parquet"] {
+        assert!(place.path().join("reports/uav-paper").join(name).is_file());
+    }
+}
+
+#[test]
+fn the_campaign_of_the_readme_is_one() {
+    let blocks = blocks("toml");
+    assert_eq!(blocks.len(), 1);
+    let campaign = Campaign::parse(&blocks[0], Path::new("README.toml")).unwrap();
+    assert_eq!(campaign.controllers.len(), 3);
+    assert_eq!(campaign.faults.len(), 1);
+    // It is the shipped one, shortened: every line that has a value is a line of that file.
+    let shipped = fs::read_to_string(repository("campaigns/uav-paper.toml")).unwrap();
+    for line in blocks[0].lines() {
+        let line = line.split(" #").next().unwrap().trim();
+        assert!(shipped.contains(line), "{line}");
+    }
+}
+
+#[test]
+fn the_python_of_the_readme_runs_and_its_tables_are_right() {
+    let python = std::env::var("URTS_PYTHON").unwrap_or_else(|_| "python3".into());
+    let imports = "import polars, pandas, pyarrow, duckdb";
+    let at_hand = Command::new(&python).args(["-c", imports]).output();
+    if !at_hand.is_ok_and(|output| output.status.success()) {
+        let required = std::env::var_os("URTS_PYTHON").is_some();
+        assert!(
+            !required,
+            "{python} lacks one of polars, pandas, pyarrow, duckdb"
+        );
+        println!("SKIPPED: no Python with polars, pandas, pyarrow and duckdb");
+        return;
+    }
+    let place = place();
+    let output = program(
+        place.path(),
+        "run campaigns/smoke.toml --quiet --backend cpu",
+    );
+    assert!(output.status.success());
+    let blocks = blocks("python");
+    assert_eq!(blocks.len(), 3);
+    let mut said = Vec::new();
+    for block in blocks {
+        let output = Command::new(&python)
+            .current_dir(place.path())
+            .env("PYTHONIOENCODING", "utf-8")
+            .args(["-c", &block])
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{block}\n{errors}");
+        said.push(String::from_utf8(output.stdout).unwrap());
+    }
+    // Failures by controller, as the summary has them.
+    let summary = fs::read_to_string(place.path().join("reports/smoke/summary.csv")).unwrap();
+    let pid = summary
+        .lines()
+        .find(|line| line.starts_with("pid,all,rmse,position"))
+        .unwrap();
+    let failed = pid.split(',').nth(5).unwrap();
+    let line = said[0].lines().find(|line| line.contains("pid ")).unwrap();
+    assert!(line.contains(failed), "{line}: {failed}");
+    for channel in ["roll", "yaw"] {
+        assert!(said[1].contains(channel), "{}", said[1]);
+    }
+    assert!(said[2].contains("times_smaller"), "{}", said[2]);
+}

@@ -1,0 +1,198 @@
+//! The report of a run: what it says, and what a browser makes of it.
+
+mod browser;
+
+use crate::common::repository;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// The directory of a run, which is removed with it.
+struct Run {
+    _place: TempDir,
+    dir: PathBuf,
+}
+
+impl Run {
+    /// Flies a shipped campaign with parts of its text replaced.
+    fn of(name: &str, episodes: u32, changes: &[(&str, &str)]) -> Self {
+        let place = TempDir::new().unwrap();
+        let mut text = fs::read_to_string(repository(&format!("campaigns/{name}.toml"))).unwrap();
+        for (old, new) in changes {
+            assert!(text.contains(old), "{name}.toml does not contain {old:?}");
+            text = text.replace(old, new);
+        }
+        let campaign = place.path().join("c.toml");
+        fs::write(&campaign, text).unwrap();
+        let dir = place.path().join("out");
+        let ended = program(&[
+            "run",
+            campaign.to_str().unwrap(),
+            "--backend",
+            "cpu",
+            "--quiet",
+            "--episodes",
+            &episodes.to_string(),
+            "--out",
+            dir.to_str().unwrap(),
+        ]);
+        // A requirement may not hold.
+        assert!([0, 4].contains(&ended.0), "{}", ended.1);
+        Self { _place: place, dir }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.dir.join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+}
+
+/// Exit code and what was said on standard error.
+fn program(arguments: &[&str]) -> (i32, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_urts-mc"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    (output.status.code().unwrap_or(-1), said)
+}
+
+/// A run without limits that any flight keeps to: every episode of every controller fails.
+fn all_failed() -> Run {
+    let strict = ("max_error = 1.5", "max_error = 1e-6");
+    Run::of("smoke", 4, &[strict])
+}
+
+/// The rows of a CSV file, by column.
+fn rows(text: &str) -> Vec<std::collections::HashMap<String, String>> {
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    lines
+        .map(|line| {
+            let cells = line.split(',').map(String::from);
+            head.iter().map(ToString::to_string).zip(cells).collect()
+        })
+        .collect()
+}
+
+#[test]
+fn a_report_says_what_the_tables_say() {
+    let run = Run::of("smoke", 12, &[]);
+    let (html, markdown) = (run.read("report.html"), run.read("report.md"));
+    for row in rows(&run.read("summary.csv")) {
+        if row["metric"] != "rmse" || row["group"] != "position" || row["stratum"] != "all" {
+            continue;
+        }
+        let counts = format!("{} of {}", row["failed"], row["n"]);
+        assert!(html.contains(&counts), "{counts}");
+        // A line of the table in Markdown holds the whole row.
+        let line = markdown
+            .lines()
+            .find(|line| line.starts_with(&format!("| {} | ", row["controller"])))
+            .unwrap();
+        assert!(line.contains(&counts), "{line}");
+        let rate: f64 = row["failure_rate"].parse().unwrap();
+        assert!(line.contains(&format!("{:.1}", 100.0 * rate)), "{line}");
+        let median: f64 = row["q50"].parse().unwrap();
+        assert!(html.contains(&format!("{median:.4} [")), "{median}");
+    }
+    for row in rows(&run.read("comparison.csv")) {
+        if row["scope"] == "group" && row["stratum"] == "all" {
+            let ratio: f64 = row["ratio"].parse().unwrap();
+            let shown = &format!("{ratio:.6}")[..4];
+            assert!(html.contains(shown), "{shown}");
+        }
+    }
+    for row in rows(&run.read("worst.csv")) {
+        let (episode, controller) = (&row["episode"], &row["controller"]);
+        let command = format!("--episode {episode} --controller {controller}");
+        assert!(
+            html.contains(&command) && markdown.contains(&command),
+            "{command}"
+        );
+    }
+    for word in [
+        "seed",
+        "BLAKE3",
+        "certified attenuation",
+        "survival",
+        "controllers = ",
+    ] {
+        assert!(html.contains(word), "{word}");
+    }
+    assert!(!html.contains("<script") && !html.contains("NaN"));
+}
+
+#[test]
+fn a_report_is_made_again_from_the_directory_alone() {
+    let run = Run::of("smoke", 3, &[]);
+    let before = [run.read("report.html"), run.read("report.md")];
+    for name in ["report.html", "report.md"] {
+        fs::remove_file(run.path(name)).unwrap();
+    }
+    fs::remove_file(run.dir.parent().unwrap().join("c.toml")).unwrap();
+    let dir = run.dir.to_str().unwrap();
+    assert_eq!(program(&["report", dir]), (0, String::new()));
+    assert_eq!([run.read("report.html"), run.read("report.md")], before);
+}
+
+#[test]
+fn a_report_of_no_run_names_what_is_missing() {
+    let run = Run::of("smoke", 2, &[]);
+    let dir = run.dir.to_str().unwrap();
+    fs::remove_file(run.path("channels.parquet")).unwrap();
+    let (code, said) = program(&["report", dir]);
+    assert_eq!(code, 2);
+    assert!(said.contains("channels.parquet is missing"), "{said}");
+    fs::write(run.path("channels.parquet"), "no table").unwrap();
+    let (code, said) = program(&["report", dir]);
+    assert_eq!(code, 2);
+    assert!(said.contains("channels.parquet: "), "{said}");
+    fs::remove_file(run.path("manifest.json")).unwrap();
+    let (code, said) = program(&["report", dir]);
+    assert_eq!(code, 2);
+    assert!(said.contains("manifest.json"), "{said}");
+}
+
+#[test]
+fn a_report_of_a_run_in_which_all_fails_says_so() {
+    let run = all_failed();
+    let markdown = run.read("report.md");
+    assert!(markdown.contains("4 of 4"), "{markdown}");
+    assert!(!markdown.contains("| 0 of 4"), "{markdown}");
+    assert!(!run.read("report.html").contains("NaN"));
+}
+
+#[test]
+fn a_report_of_an_interrupted_run_begins_with_what_is_missing() {
+    let run = Run::of("smoke", 3, &[]);
+    assert!(!run.read("report.html").contains("role=\"alert\""));
+    let manifest = run.read("manifest.json");
+    let cut = manifest
+        .replace("\"episodes_asked\": 3", "\"episodes_asked\": 8")
+        .replace(
+            "\"interrupted\": null",
+            "\"interrupted\": \"the GPU is <gone>\"",
+        );
+    assert_ne!(cut, manifest);
+    fs::write(run.path("manifest.json"), cut).unwrap();
+    assert_eq!(program(&["report", run.dir.to_str().unwrap()]).0, 0);
+    let html = run.read("report.html");
+    let alert = html.split("role=\"alert\"").nth(1).unwrap();
+    let alert = alert.split("</p>").next().unwrap();
+    // Whatever a message contains, it is text.
+    assert!(
+        alert.contains("the GPU is &lt;gone&gt;; the 3 of 8 episodes"),
+        "{alert}"
+    );
+    assert!(run.read("report.md").contains("3 of 8 episodes"));
+}
+
+/// A file as an address.
+fn address(path: &Path) -> String {
+    format!("file://{}", path.display())
+}
