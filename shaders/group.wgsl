@@ -90,6 +90,9 @@ fn agent_respond(stage: u32, at: Reference, step: u32) -> Response {
             inputs.force = fma(others * own.kappa, position, disturbance);
         }
     }
+    if N_VORTICES > 0u && own.channel == HEIGHT {
+        inputs.force = inputs.force + vortex_force(stage);
+    }
     return respond(stage, inputs);
 }
 
@@ -114,7 +117,8 @@ fn team_commands() -> f32 {
     return sum;
 }
 
-// A sum over a team made finite, so that an agent that diverged leaves those alone on whom it acts with a strength of zero.
+// A sum over a team, or an agent's place, made finite, so that an agent that diverged leaves those alone on whom it acts with a
+// strength of zero.
 fn finite(sum: f32) -> f32 {
     return select(select(FAR_AWAY, -FAR_AWAY, sum < 0.0), sum, lane_within(sum, FAR_AWAY));
 }

@@ -32,7 +32,7 @@ struct ChannelPlant {
 }
 
 fn channel_plant() -> ChannelPlant {
-    if PLANT == AXIS {
+    if PLANT == AXIS || PLANT == TRANSLATION {
         return ChannelPlant(0.0, 0.0, 0.0);
     }
     let i = (setting.first_channel + own.channel) % 3u;
@@ -72,7 +72,10 @@ fn publish_channel(stage: u32, inputs: Inputs) {
 
 fn respond(stage: u32, inputs: Inputs) -> Response {
     if PLANT == AXIS {
-        return axis_respond(inputs);
+        return axis_respond(inputs, setting.plant.gravity);
+    }
+    if PLANT == TRANSLATION {
+        return axis_respond(inputs, select(0.0, setting.plant.gravity, own.channel == HEIGHT));
     }
     if PLANT == ATTITUDE {
         return attitude_respond(stage, inputs);
@@ -80,11 +83,12 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
     return thrust_respond(stage, inputs);
 }
 
-fn axis_respond(inputs: Inputs) -> Response {
+// An axis along which gravity pulls by as much.
+fn axis_respond(inputs: Inputs, gravity: f32) -> Response {
     let wanted = fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w);
     let command = actuator_command(wanted);
     let force = fma(inputs.velocity, -setting.plant.drag, command + inputs.force);
-    let offset = inputs.reference.row.z + setting.plant.gravity;
+    let offset = inputs.reference.row.z + gravity;
     let error_acceleration = fma(force, inverse_inertia, -offset);
     return Response(error_acceleration, inputs.feedback, wanted, command, 0.0, vec2(0.0));
 }

@@ -87,8 +87,11 @@ pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
 /// touch down.
 fn is_smooth_force(kind: DisturbanceKind) -> bool {
     match kind {
-        // A gust begins and ends with a rate of zero.
-        DisturbanceKind::Sine | DisturbanceKind::Constant | DisturbanceKind::Gust1Cosine => true,
+        // A gust begins and ends with a rate of zero, and so does a jet at the height of its rotors.
+        DisturbanceKind::Sine
+        | DisturbanceKind::Constant
+        | DisturbanceKind::Gust1Cosine
+        | DisturbanceKind::RotorVortex => true,
         DisturbanceKind::Dryden | DisturbanceKind::GroundReaction => false,
     }
 }

@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 /// Channels of a UAV, in the order of every table and list.
 const UAV_CHANNELS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+/// The channel of a UAV's height.
+pub const HEIGHT: usize = 2;
 /// The first attitude channel of a UAV.
 pub const FIRST_ATTITUDE: usize = 3;
 

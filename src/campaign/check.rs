@@ -95,12 +95,12 @@ macro_rules! parameters {
 parameters!(InitialFile: error, error_rate, error_integral);
 parameters!(InitialBlock: error, error_rate, error_integral);
 parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale, speed_m_s, gain_n_s_m, onset_s, duration_s,
-    wind_m_s, altitude_m, airspeed_m_s);
+    wind_m_s, altitude_m, airspeed_m_s, force_n, radius_m, length_m);
 parameters!(FaultFile: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
     burst_s, share, mass_kg, offset_x_m, offset_y_m);
 parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std, scale, speed_m_s,
     gain_n_s_m, onset_s, duration_s, wind_m_s, altitude_m, airspeed_m_s, rate, delay_s, window_s, burst_s, share, mass_kg,
-    offset_x_m, offset_y_m);
+    offset_x_m, offset_y_m, force_n, radius_m, length_m);
 
 /// A campaign file under examination.
 pub(super) struct Check<'a> {

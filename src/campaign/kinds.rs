@@ -1,6 +1,6 @@
 //! The parameters of every kind of disturbance and fault, by name: one list serves validation, draws and tables.
 
-use super::agent::FIRST_ATTITUDE;
+use super::agent::{FIRST_ATTITUDE, HEIGHT};
 use super::check::{Bounds, Parameter, of_agent, required};
 use super::file::{DisturbanceKind, FaultKind, FaultTarget, Per};
 
@@ -11,6 +11,9 @@ const PHASE: Parameter = Parameter {
     per: Per::Channel,
 };
 
+/// Sizes of a jet in m: below a millimetre, squares of far distances would leave the singles.
+const JET_SIZE: Bounds = Bounds::AtLeast(1e-3);
+
 impl DisturbanceKind {
     /// The name of this kind in a campaign file.
     #[must_use]
@@ -20,15 +23,17 @@ impl DisturbanceKind {
             Self::Constant => "constant",
             Self::Gust1Cosine => "gust-1-cosine",
             Self::Dryden => "dryden",
+            Self::RotorVortex => "rotor-vortex",
             Self::GroundReaction => "ground-reaction",
         }
     }
 
-    /// Whether it acts on a channel: wind does on those of translation alone.
+    /// Whether it acts on a channel: wind does on those of translation alone, and jets blow downwards.
     #[must_use]
     pub fn acts_on(self, channel: usize) -> bool {
         match self {
             Self::Gust1Cosine | Self::Dryden => channel < FIRST_ATTITUDE,
+            Self::RotorVortex => channel == HEIGHT,
             Self::Sine | Self::Constant | Self::GroundReaction => true,
         }
     }
@@ -64,6 +69,15 @@ impl DisturbanceKind {
                         of_agent("altitude_m", Bounds::Between(3.0, 305.0)),
                         of_agent("airspeed_m_s", Bounds::AtLeast(0.5)),
                         required("gain_n_s_m", Bounds::NonNegative),
+                    ]
+                }
+            }
+            Self::RotorVortex => {
+                const {
+                    &[
+                        of_agent("force_n", Bounds::NonNegative),
+                        of_agent("radius_m", JET_SIZE),
+                        of_agent("length_m", JET_SIZE),
                     ]
                 }
             }

@@ -9,7 +9,7 @@ mod kinds;
 mod plan;
 mod validate;
 
-pub use agent::{Agent, Biped, ChannelGroup, FIRST_ATTITUDE, RobotFile, Uav};
+pub use agent::{Agent, Biped, ChannelGroup, FIRST_ATTITUDE, HEIGHT, RobotFile, Uav};
 pub use check::Parameter;
 pub use distribution::Distribution;
 pub use error::CampaignError;
@@ -198,6 +198,13 @@ impl Campaign {
     #[must_use]
     pub fn is_coupled(&self) -> bool {
         self.team > 1 && !self.kappa.is_zero()
+    }
+
+    /// Whether agents blow on each other, so that their distances matter.
+    #[must_use]
+    pub fn has_vortices(&self) -> bool {
+        let blows = |one: &Disturbance| one.kind == DisturbanceKind::RotorVortex;
+        self.disturbances.iter().any(blows)
     }
 }
 

@@ -13,7 +13,8 @@ use super::memory::Moment;
 use super::metric::{Limits, Metrics, Sample};
 use super::plant::{Inputs, Plant, ReferenceRow, Response};
 use super::signal::{Signals, kernel};
-use crate::campaign::{Campaign, CouplingCoordinates};
+use super::vortex::Vortex;
+use crate::campaign::{Campaign, CouplingCoordinates, FIRST_ATTITUDE, HEIGHT};
 
 /// Constants of a group: plant, gains and limits of its channels.
 pub(crate) struct Setting<'t, P, R, const NC: usize> {
@@ -52,12 +53,23 @@ impl Coupling {
     }
 }
 
+/// What an agent meets of its team at a stage.
+pub(crate) struct Team<'a, L, const NC: usize> {
+    /// The sum of x, where the coupling needs it.
+    pub(crate) sum: [L; NC],
+    /// x, y and z of each agent, where vortices need them; else nothing.
+    pub(crate) places: &'a [[L; FIRST_ATTITUDE]],
+    /// Agents.
+    pub(crate) size: usize,
+}
+
 /// One agent's channels of the group.
 pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) channels: [Stepped<L, NS>; NC],
     pub(crate) extra: Stepped<L, NX>,
     pub(crate) signals: Signals<L, NC>,
     pub(crate) kappa: L,
+    pub(crate) vortices: Vec<Vortex<L>>,
     /// u_fb as it is held by a sampled controller.
     pub(crate) held_feedback: [L; NC],
     pub(crate) first_fault: L,
@@ -74,6 +86,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             extra: Stepped::new([L::number(0.0); NX]),
             signals: condition.signals,
             kappa: condition.kappa,
+            vortices: condition.vortices,
             held_feedback: [L::number(0.0); NC],
             first_fault: condition.first_fault,
             metrics: [Metrics::new(); NC],
@@ -115,14 +128,14 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         wanted
     }
 
-    /// The answer of the plant at the state of stage `STAGE`; `team` is the sum of x over the team of `size`.
+    /// The answer of the plant at the state of stage `STAGE` of agent number `own` of its team.
     #[inline(always)]
     pub(crate) fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
         setting: &Setting<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
-        team: &[L; NC],
-        size: usize,
+        team: &Team<'_, L, NC>,
+        own: usize,
         step: u32,
     ) -> Response<L, NC, NX> {
         let [position, velocity] = self.motion::<P, STAGE>(&setting.plant, rows);
@@ -132,18 +145,23 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             Coupling::Absolute => {
                 for c in 0..NC {
                     // (10): c = kappa x o sum of the other agents' x.
-                    let others = team[c] - position[c];
+                    let others = team.sum[c] - position[c];
                     force[c] = (others * self.kappa).mul_add(position[c], force[c]);
                 }
             }
             Coupling::Centroid => {
-                let share = L::number(1.0 / size as f64);
+                let share = L::number(1.0 / team.size as f64);
                 for c in 0..NC {
                     // The same with x counted from the centroid, where all sum up to zero: the others' are minus one's own.
-                    let own = team[c].mul_add(-share, position[c]);
-                    force[c] = (own * -self.kappa).mul_add(own, force[c]);
+                    let from_centroid = team.sum[c].mul_add(-share, position[c]);
+                    force[c] = (from_centroid * -self.kappa).mul_add(from_centroid, force[c]);
                 }
             }
+        }
+        // An axis on its own has no vortices, and no channel of this number.
+        if NC > HEIGHT && !self.vortices.is_empty() {
+            let pushed = kernel::vortex_force(&self.vortices, own, team.places);
+            force[HEIGHT] = force[HEIGHT] + pushed;
         }
         let inputs = Inputs {
             reference: rows,

@@ -9,7 +9,8 @@ use super::plant_uav::inertia;
 use super::rng::{Address, Stream};
 use super::signal::{Signals, Wave};
 use super::switch::Switch;
-use crate::campaign::{Agent, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE};
+use super::vortex::Vortex;
+use crate::campaign::{Agent, Campaign, Disturbance, DisturbanceKind, FIRST_ATTITUDE, HEIGHT};
 use crate::draw::{AgentDraw, Episode, member};
 use std::f64::consts::TAU;
 
@@ -26,6 +27,7 @@ pub(crate) struct Condition<L: Lane, const NC: usize> {
     pub(crate) initial: [[L; 3]; NC],
     pub(crate) signals: Signals<L, NC>,
     pub(crate) kappa: L,
+    pub(crate) vortices: Vec<Vortex<L>>,
     /// The step of the first fault that does not begin with the run; infinite if there is none.
     pub(crate) first_fault: L,
 }
@@ -99,6 +101,7 @@ impl Block<'_> {
             }),
             signals,
             kappa: channel(&|draw| draw.kappa),
+            vortices: self.vortices::<L, NC>(agent, first, entries),
             first_fault: channel(&|draw| {
                 later_onsets(campaign, draw)
                     .into_iter()
@@ -194,8 +197,37 @@ impl Block<'_> {
                         .push(self.turbulence(agent, index, first));
                 }
             }
-            DisturbanceKind::Sine => {}
+            DisturbanceKind::Sine | DisturbanceKind::RotorVortex => {}
         }
+    }
+
+    /// What an agent feels of the others' jets, where its channels are those of a place.
+    fn vortices<L: Lane, const NC: usize>(
+        &self,
+        agent: usize,
+        first: usize,
+        entries: Entries,
+    ) -> Vec<Vortex<L>> {
+        if first > 0 || NC <= HEIGHT {
+            return Vec::new();
+        }
+        let all = self.campaign.disturbances.iter().enumerate();
+        let felt = all.filter(|(_, disturbance)| disturbance.kind == DisturbanceKind::RotorVortex);
+        felt.filter_map(|(index, _)| {
+            let of = |parameter: usize, pick: fn(f64) -> f64| {
+                self.lanes::<L>(agent, |draw| {
+                    pick(draw.disturbances[index][parameter][HEIGHT])
+                })
+            };
+            let force_n = of(0, |force_n| force_n);
+            let acts = force_n.iter().any(|force_n| *force_n != 0.0);
+            (acts || entries == Entries::Possible).then(|| Vortex {
+                force: L::load(&force_n),
+                inverse_radius: L::load(&of(1, f64::recip)),
+                inverse_length: L::load(&of(2, |length_m| 2.0 / length_m)),
+            })
+        })
+        .collect()
     }
 
     /// One turn of 1 - cos from an onset on.

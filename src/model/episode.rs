@@ -15,7 +15,7 @@ use super::part::parts;
 pub(crate) use super::part::{Part, PlantKind};
 use super::plant::Plant;
 use super::plant_biped::Leg;
-use super::plant_uav::{Attitude, Axis, Thrust};
+use super::plant_uav::{Attitude, Axis, Thrust, Translation};
 use crate::campaign::{self, Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
 use crate::robot::LEG_JOINTS;
@@ -196,6 +196,9 @@ impl<R: Real> Flight<'_, R> {
         match &campaign.agent {
             campaign::Agent::Uav(uav) => match part.plant {
                 PlantKind::Axis => self.group::<L, _, 1, NS, 0>(Axis::new(uav, first), part),
+                PlantKind::Translation => {
+                    self.group::<L, _, 3, NS, 0>(Translation::new(uav), part);
+                }
                 PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
                 _ => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
             },

@@ -8,7 +8,7 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::agent::{Agent, Coupling, Setting};
+use super::agent::{Agent, Coupling, Setting, Team};
 use super::controller::{Measured, OBSERVER, error_estimate, fault_estimates, step_channel};
 use super::integrator::Step;
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
@@ -16,6 +16,7 @@ use super::memory::Moment;
 use super::metric::ChannelOutcome;
 use super::plant::{Plant, ReferenceRow};
 use super::signal::{Signals, kernel};
+use crate::campaign::{FIRST_ATTITUDE, HEIGHT};
 use crate::synthesis::LOOP_STATES;
 
 /// Steps between two flushes of the metrics, counted from step 0.
@@ -43,6 +44,8 @@ pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usi
     restless: bool,
     /// Whether anything of a step matters to the next.
     remembers: bool,
+    /// Where the agents show themselves to be at a stage, if some agent feels the others' jets; else nothing.
+    pub(crate) places: Vec<[L; FIRST_ATTITUDE]>,
     pub(crate) step: u32,
 }
 
@@ -94,6 +97,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         changes.dedup();
         let any = |is: fn(&Signals<L, NC>) -> bool| agents.iter().any(|agent| is(&agent.signals));
         let (restless, remembers) = (any(Signals::is_restless), any(Signals::remembers));
+        let shown = if agents.iter().any(|agent| !agent.vortices.is_empty()) {
+            agents.len()
+        } else {
+            0
+        };
         Self {
             agents,
             episodes,
@@ -101,6 +109,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
             next_change: 0,
             restless,
             remembers,
+            places: vec![[L::number(0.0); FIRST_ATTITUDE]; shown],
             step: 0,
         }
     }
@@ -164,6 +173,25 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         sum
     }
 
+    /// Sets where the agents show themselves to be.
+    #[inline(always)]
+    pub(crate) fn place_agents<P: Plant<L, NC, NX>, const STAGE: usize>(
+        &mut self,
+        setting: &Setting<'_, P, L::Real, NC>,
+        rows: &[ReferenceRow<L::Real>],
+    ) {
+        if NC > HEIGHT && !self.places.is_empty() {
+            let rows = rows.chunks_exact(NC * P::ROWS);
+            for ((agent, place), rows) in self.agents.iter().zip(&mut self.places).zip(rows) {
+                let [position, _] = agent.motion::<P, STAGE>(&setting.plant, rows);
+                for c in 0..FIRST_ATTITUDE {
+                    place[c] = position[c];
+                }
+                finite(place);
+            }
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn stage<P: Plant<L, NC, NX>, const STAGE: usize, const SETTLED: bool>(
         &mut self,
@@ -171,10 +199,17 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         rows: &[ReferenceRow<L::Real>],
         h: &Step<L::Real>,
     ) {
-        let team = self.team_sum::<P, STAGE>(setting, rows);
-        let (size, step, remembers) = (self.agents.len(), self.step, self.remembers);
-        for (agent, rows) in self.agents.iter_mut().zip(rows.chunks_exact(NC * P::ROWS)) {
-            let response = agent.respond::<P, STAGE>(setting, rows, &team, size, step);
+        let sum = self.team_sum::<P, STAGE>(setting, rows);
+        self.place_agents::<P, STAGE>(setting, rows);
+        let team = Team {
+            sum,
+            places: &self.places,
+            size: self.agents.len(),
+        };
+        let (step, remembers) = (self.step, self.remembers);
+        let rows = rows.chunks_exact(NC * P::ROWS);
+        for ((own, agent), rows) in self.agents.iter_mut().enumerate().zip(rows) {
+            let response = agent.respond::<P, STAGE>(setting, rows, &team, own, step);
             let off = agent.distortion::<P, STAGE>(&setting.plant, rows);
             if STAGE == 0 {
                 agent.observe::<P, SETTLED>(&setting.limits, &response, &off, step);
@@ -270,17 +305,23 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         let stride = self.agents.len() * NC * P::ROWS;
         let first = 2 * self.step as usize * stride;
         let rows = &setting.table[first..first + stride];
-        let team = self.team_sum::<P, 0>(setting, rows);
-        let size = self.agents.len();
+        let sum = self.team_sum::<P, 0>(setting, rows);
+        self.place_agents::<P, 0>(setting, rows);
+        let team = Team {
+            sum,
+            places: &self.places,
+            size: self.agents.len(),
+        };
         let blank = (Shown::default(), Internals::default());
-        let mut shown = vec![[blank; NC]; size];
-        for ((agent, rows), shown) in self
+        let mut shown = vec![[blank; NC]; team.size];
+        for (((own, agent), rows), shown) in self
             .agents
             .iter()
+            .enumerate()
             .zip(rows.chunks_exact(NC * P::ROWS))
             .zip(&mut shown)
         {
-            let response = agent.respond::<P, 0>(setting, rows, &team, size, self.step);
+            let response = agent.respond::<P, 0>(setting, rows, &team, own, self.step);
             let off = agent.distortion::<P, 0>(&setting.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&setting.plant, rows);
             for c in 0..NC {
@@ -350,7 +391,8 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     }
 }
 
-/// Makes sums over a team finite, so that an agent that diverged leaves those alone on whom it acts with a strength of zero.
+/// Makes sums over a team, or an agent's place, finite, so that an agent that diverged leaves those alone on whom it acts with a
+/// strength of zero.
 #[inline(always)]
 pub(crate) fn finite<L: Lane, const NC: usize>(sums: &mut [L; NC]) {
     let (low, high) = (L::number(-FAR_AWAY), L::number(FAR_AWAY));

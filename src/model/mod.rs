@@ -27,5 +27,6 @@ pub(crate) mod signal;
 #[cfg(target_arch = "x86_64")]
 pub mod simd;
 pub(crate) mod switch;
+pub(crate) mod vortex;
 
 pub use group::{Internals, Shown};

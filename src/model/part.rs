@@ -17,6 +17,8 @@ use std::ops::Range;
 pub(crate) enum PlantKind {
     /// One axis of translation, fully actuated.
     Axis,
+    /// All three of them, where rotor vortices make distances matter.
+    Translation,
     /// The attitude, fully actuated.
     Attitude,
     /// All channels of a UAV, with thrust along the body axis.
@@ -37,7 +39,7 @@ pub(crate) struct Part<R> {
 /// The parts of a campaign's episodes.
 pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Part<R>> {
     let (plants, rows) = match &campaign.agent {
-        Agent::Uav(uav) => (uav_plants(uav), 1),
+        Agent::Uav(uav) => (uav_plants(uav, campaign.has_vortices()), 1),
         Agent::Biped(_) => {
             let legs = [0..LEG_JOINTS, LEG_JOINTS..JOINTS].map(|joints| (PlantKind::Leg, joints));
             (legs.to_vec(), leg_rows(campaign.is_limited()))
@@ -66,9 +68,13 @@ pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Part<R>> {
     plants.into_iter().map(part).collect()
 }
 
-fn uav_plants(uav: &Uav) -> Vec<(PlantKind, Range<usize>)> {
+fn uav_plants(uav: &Uav, vortices: bool) -> Vec<(PlantKind, Range<usize>)> {
     match uav.actuation {
         ActuationKind::Thrust => vec![(PlantKind::Thrust, 0..6)],
+        ActuationKind::Full | ActuationKind::Limited if vortices => vec![
+            (PlantKind::Translation, 0..FIRST_ATTITUDE),
+            (PlantKind::Attitude, FIRST_ATTITUDE..6),
+        ],
         ActuationKind::Full | ActuationKind::Limited => vec![
             (PlantKind::Axis, 0..1),
             (PlantKind::Axis, 1..2),

@@ -1,7 +1,8 @@
 //! The UAV of (3) in groups of channels that act on each other.
 //!
 //! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust along
-//! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet.
+//! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet; rotor vortices depend
+//! on distances, and put the three axes into one group.
 
 #![expect(
     clippy::needless_range_loop,
@@ -10,7 +11,7 @@
 
 use super::lanes::{Lane, Real};
 use super::plant::{Inputs, Plant, ReferenceRow, Response, clamp, splat_row, tabulated};
-use crate::campaign::Uav;
+use crate::campaign::{HEIGHT, Uav};
 
 /// Modelled inertia of each channel.
 #[must_use]
@@ -49,8 +50,28 @@ impl<R: Real> Axis<R> {
         Self {
             mass: R::from_f64(uav.mass_kg),
             drag: R::from_f64(uav.drag_n_s_m),
-            gravity: R::from_f64(if axis == 2 { uav.gravity_m_s2 } else { 0.0 }),
+            gravity: R::from_f64(if axis == HEIGHT {
+                uav.gravity_m_s2
+            } else {
+                0.0
+            }),
         }
+    }
+
+    /// x'' - r'' of this axis, which is channel `c` of its group, the command that is wanted and the one that acts.
+    #[inline(always)]
+    pub(crate) fn answer<L: Lane<Real = R>, const NC: usize>(
+        &self,
+        inputs: &Inputs<'_, L, NC>,
+        c: usize,
+    ) -> [L; 3] {
+        let [_, _, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[c]);
+        let wanted = inputs.feedback[c].mul_add(L::splat(self.mass), feedforward);
+        let command = inputs.actuator.command(c, wanted);
+        let force = inputs.velocity[c].mul_add(-L::splat(self.drag), command + inputs.force[c]);
+        let offset = r_acceleration + L::splat(self.gravity);
+        let acceleration = force.mul_add(inputs.inverse_inertia[c], -offset);
+        [acceleration, wanted, command]
     }
 }
 
@@ -65,17 +86,54 @@ impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
 
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 1>, _extra: &[L; 0]) -> Response<L, 1, 0> {
-        let [_, _, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[0]);
-        let wanted = inputs.feedback[0].mul_add(L::splat(self.mass), feedforward);
-        let command = inputs.actuator.command(0, wanted);
-        let force = inputs.velocity[0].mul_add(-L::splat(self.drag), command + inputs.force[0]);
-        let offset = r_acceleration + L::splat(self.gravity);
+        let [acceleration, wanted, command] = self.answer(inputs, 0);
         Response {
-            error_acceleration: [force.mul_add(inputs.inverse_inertia[0], -offset)],
+            error_acceleration: [acceleration],
             told: inputs.feedback,
             wanted: [wanted],
             command: [command],
             excess: [L::number(0.0)],
+            extra_rate: [],
+        }
+    }
+}
+
+/// The three axes of translation, fully actuated, of agents whose distances matter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Translation<R> {
+    pub(crate) axes: [Axis<R>; 3],
+}
+
+impl<R: Real> Translation<R> {
+    pub(crate) fn new(uav: &Uav) -> Self {
+        Self {
+            axes: std::array::from_fn(|axis| Axis::new(uav, axis)),
+        }
+    }
+}
+
+impl<L: Lane> Plant<L, 3, 0> for Translation<L::Real> {
+    const LIMITED: bool = false;
+    const ROWS: usize = 1;
+
+    #[inline(always)]
+    fn reference(&self, rows: &[ReferenceRow<L::Real>], _extra: &[L; 0]) -> [[L; 3]; 2] {
+        tabulated(rows, 1)
+    }
+
+    #[inline(always)]
+    fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
+        let zero = L::number(0.0);
+        let (mut acceleration, mut wanted, mut command) = ([zero; 3], [zero; 3], [zero; 3]);
+        for i in 0..3 {
+            [acceleration[i], wanted[i], command[i]] = self.axes[i].answer(inputs, i);
+        }
+        Response {
+            error_acceleration: acceleration,
+            told: inputs.feedback,
+            wanted,
+            command,
+            excess: [zero; 3],
             extra_rate: [],
         }
     }

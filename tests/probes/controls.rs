@@ -287,6 +287,60 @@ const CONTROLS: &[Control] = &[
         "forward_dynamics",
     ),
     control(
+        "plant_uav",
+        "select(0.0, setting.plant.gravity, own.channel == HEIGHT)",
+        "setting.plant.gravity",
+        "plant",
+    ),
+    control(
+        "vortex",
+        "1.0 / fma(s2, JET_SPREAD, 1.0)",
+        "1.0 / fma(s2, JET_SPREAD * 1.00001, 1.0)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "near * near * (share * JET_PEAK)",
+        "near * share * (share * JET_PEAK)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "lane_max(other.z - here.z, 0.0)",
+        "abs(other.z - here.z)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "fma(ahead, ahead, aside * aside)",
+        "fma(ahead, ahead, ahead * aside)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "VORTICES + 3u * k",
+        "VORTICES + 2u * k",
+        "vortex_force",
+    ),
+    control(
+        "vortex",
+        "finite(published[slot(stage, POSITION, 1u, agent)])",
+        "published[slot(stage, POSITION, 1u, agent)]",
+        "vortex_force",
+    ),
+    control(
+        "vortex",
+        "fma(sum, -vortex.force, force)",
+        "fma(sum, vortex.force, force)",
+        "vortex_force",
+    ),
+    control(
+        "group",
+        "N_VORTICES > 0u && own.channel == HEIGHT",
+        "N_VORTICES > 0u",
+        "agent_respond",
+    ),
+    control(
         "metric",
         "recent.absolute = recent.absolute + size;",
         "recent.absolute = recent.absolute + size * 1.0001;",
@@ -430,7 +484,7 @@ fn val_every_change_is_of_a_text_that_there_is() {
     let files: BTreeSet<&str> = controls().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        17,
+        18,
         "each file of shaders/ and the constants: {files:?}"
     );
     let texts = shapes::probed().map(|shape| shape.text());

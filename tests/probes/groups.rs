@@ -7,7 +7,7 @@ use super::signals::{begin, next_change};
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::backend::gpu::words::NEVER;
-use crate::model::agent::{Agent, Coupling};
+use crate::model::agent::{Agent, Coupling, Team};
 use crate::model::controller::fault_estimates;
 use crate::model::group::finite;
 use crate::model::memory::Actuator;
@@ -85,18 +85,22 @@ pub(super) fn responses<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
     world.check(lab, body, 7, sized([1.0, 1.0, 1.0, 3.0]), |scene| {
         let rows = team_rows(world, scene);
         let setting = world.setting(&rows);
-        let group = &scene.group;
-        let team = at_stage!(
-            scene.stage,
-            STAGE,
+        let group = &mut scene.group;
+        let sum = at_stage!(scene.stage, STAGE, {
+            group.place_agents::<P, STAGE>(&setting, &rows);
             group.team_sum::<P, STAGE>(&setting, &rows)
-        );
+        });
+        let team = Team {
+            sum,
+            places: &group.places.clone(),
+            size: world.shape.team,
+        };
         for (a, rows) in rows.chunks_exact(NC * P::ROWS).enumerate() {
             let agent = &scene.group.agents[a];
             let response = at_stage!(
                 scene.stage,
                 STAGE,
-                agent.respond::<P, STAGE>(&setting, rows, &team, world.shape.team, scene.step)
+                agent.respond::<P, STAGE>(&setting, rows, &team, a, scene.step)
             );
             for c in 0..NC {
                 answer_response(scene, (a, c), &response);
@@ -404,10 +408,16 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             let next = held_next(&scene.group.agents[a], c, step);
             scene.next_change[a][c] = Expected::Bits(next);
         });
-        let team = scene.group.team_sum::<P, 0>(&setting, row);
+        let group = &mut scene.group;
+        group.place_agents::<P, 0>(&setting, row);
+        let team = Team {
+            sum: group.team_sum::<P, 0>(&setting, row),
+            places: &group.places.clone(),
+            size: world.shape.team,
+        };
         for (a, rows) in row.chunks_exact(NC * P::ROWS).enumerate() {
             let agent = &scene.group.agents[a];
-            let response = agent.respond::<P, 0>(&setting, rows, &team, world.shape.team, step);
+            let response = agent.respond::<P, 0>(&setting, rows, &team, a, step);
             let off = agent.distortion::<P, 0>(&world.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&world.plant, rows);
             for c in 0..NC {

@@ -7,7 +7,7 @@ use crate::backend::gpu::group::{BINDINGS, ENTRIES};
 use crate::backend::gpu::setting::{GainsWords, LegPlantWords, SettingHead, UavWords, setting};
 use crate::backend::gpu::shader::Shape;
 use crate::backend::gpu::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
-use crate::campaign::{Campaign, FIRST_ATTITUDE};
+use crate::campaign::{Campaign, FIRST_ATTITUDE, HEIGHT};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
@@ -16,6 +16,7 @@ use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
 use crate::model::leg::LegWords;
 use crate::model::math;
 use crate::model::rng::{self, Stream};
+use crate::model::vortex::{JET_PEAK, JET_SPREAD};
 use naga::{AddressSpace, Expression, Handle, Literal, Module, StorageAccess, TypeInner};
 use std::mem::offset_of;
 use std::path::Path;
@@ -59,7 +60,7 @@ macro_rules! offsets {
 #[test]
 fn val_every_shape_is_valid_wgsl() {
     let shapes = shapes::validated();
-    assert_eq!(shapes.len(), 576);
+    assert_eq!(shapes.len(), 750);
     for shape in shapes.iter().chain(&shapes::probed()) {
         let module = module(shape);
         let entries: Vec<&str> = module
@@ -147,7 +148,12 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         kind: ControllerKind::Ftc,
     };
     let mut plants = 0;
-    for name in ["uav-paper", "uav-physical", "biped-ground-reaction"] {
+    for name in [
+        "uav-paper",
+        "uav-faults",
+        "uav-physical",
+        "biped-ground-reaction",
+    ] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("campaigns/{name}.toml"));
         let campaign = Campaign::load(&path).unwrap();
         let model: Model<f32> = Model::new(&campaign);
@@ -160,8 +166,8 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         }
     }
     assert_eq!(
-        plants, 7,
-        "three axes and the attitude; all channels under thrust; two legs"
+        plants, 9,
+        "three axes and the attitude; the same where rotors blow; all channels under thrust; two legs"
     );
     assert_eq!(
         world.bytes().len(),
@@ -251,6 +257,7 @@ fn val_constants_are_those_of_rust() {
         let mut expected: Vec<(&str, Vec<u32>)> = vec![
             ("PLANT", count(shape.plant as usize)),
             ("AXIS", count(PlantKind::Axis as usize)),
+            ("TRANSLATION", count(PlantKind::Translation as usize)),
             ("ATTITUDE", count(PlantKind::Attitude as usize)),
             ("THRUST", count(PlantKind::Thrust as usize)),
             ("LEG", count(PlantKind::Leg as usize)),
@@ -261,6 +268,7 @@ fn val_constants_are_those_of_rust() {
             ("WORKGROUP", count(shape.workgroup())),
             ("KINDS", count(shape.kinds())),
             ("SHARED", count(shape.shared())),
+            ("HEIGHT", count(HEIGHT)),
             ("FIRST_ATTITUDE", count(FIRST_ATTITUDE)),
             ("COUPLED", flag(shape.coupling != Coupling::None)),
             ("CENTROID", flag(shape.coupling == Coupling::Centroid)),
@@ -279,6 +287,8 @@ fn val_constants_are_those_of_rust() {
             ("EXTRA", count(FTC_STATES)),
             ("EXTRA_STATES", count(shape.extra_states())),
             ("FLUSH_STEPS", vec![FLUSH_STEPS]),
+            ("JET_SPREAD", number(JET_SPREAD)),
+            ("JET_PEAK", number(JET_PEAK)),
             ("FAR_AWAY", number(FAR_AWAY)),
             ("MAX", number(f64::from(f32::MAX))),
             ("NEVER", vec![words::NEVER]),

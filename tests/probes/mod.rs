@@ -9,6 +9,7 @@
 //! | `controls`, `changes` | one change of the shaders at a time, and the probe that must notice |
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
 //! | `leg` | the dynamics of a robot's leg |
+//! | `vortex` | the jets of rotors |
 //! | `world`, `states`, `image` | teams in random states, and how their state travels |
 //!
 //! They are in the library because they see its internals. Without an adapter the probes print SKIPPED, unless
@@ -42,6 +43,7 @@ mod states;
 mod table;
 mod tracked;
 mod twins;
+mod vortex;
 mod world;
 
 use harness::Lab;

@@ -19,7 +19,7 @@ const RANDOM: usize = 500;
 type Words = Vec<u32>;
 
 /// Probes one function: the edge cases and random inputs through `body`, and through `twin`.
-fn probe(
+pub(super) fn probe(
     lab: &Lab,
     body: &str,
     edges: Vec<Words>,
@@ -64,11 +64,11 @@ fn probe(
     compared
 }
 
-fn number(word: u32) -> Tracked {
+pub(super) fn number(word: u32) -> Tracked {
     Tracked::exact(f32::from_bits(word))
 }
 
-fn near(number: Tracked) -> Vec<Expected> {
+pub(super) fn near(number: Tracked) -> Vec<Expected> {
     vec![Expected::Near(number)]
 }
 
@@ -88,7 +88,7 @@ fn each(values: &[f32]) -> Vec<Words> {
     choices::<1>(values)
 }
 
-fn words(numbers: &mut Numbers, sizes: &[f64]) -> Words {
+pub(super) fn words(numbers: &mut Numbers, sizes: &[f64]) -> Words {
     sizes.iter().map(|&size| numbers.single(size)).collect()
 }
 

@@ -7,20 +7,22 @@ use crate::campaign::{ActuationKind, Uav};
 use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;
 use crate::model::plant_biped::Leg;
-use crate::model::plant_uav::{Attitude, Axis, Thrust};
+use crate::model::plant_uav::{Attitude, Axis, Thrust, Translation};
 use crate::robot::Robot;
 use std::path::Path;
 
-/// How many items each list has, in the order of [`LISTS`], and how many turbulences there are.
-type Counts = ([usize; LISTS.len()], usize);
+/// How many items each list has, in the order of [`LISTS`], how many turbulences there are, and vortices where channels are those
+/// of a place.
+type Counts = ([usize; LISTS.len()], usize, usize);
 
 /// No signal.
-const NONE: Counts = ([0; LISTS.len()], 0);
+const NONE: Counts = ([0; LISTS.len()], 0, 0);
 /// Several of each kind, in numbers that no two lists next to each other share.
 const ALL: Counts = (
     [
         2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2,
     ],
+    2,
     2,
 );
 /// The same with fewer, which the larger plants have: their texts take long to compile.
@@ -29,6 +31,7 @@ const EACH: Counts = (
         1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1,
     ],
     1,
+    1,
 );
 /// Only what needs no look at every step: it changes when switches turn, at once.
 const QUIET: Counts = (
@@ -36,7 +39,10 @@ const QUIET: Counts = (
         1, 2, 1, 0, 0, 2, 1, 2, 1, 0, 0, 0, 0, 0, 2, 1, 2, 1, 2, 0, 0,
     ],
     0,
+    0,
 );
+/// The same among jets.
+const BLOWN: Counts = (QUIET.0, 0, 2);
 /// One noise.
 const NOISY: Counts = single(9);
 /// Samples that rings have room for; some are shorter than this.
@@ -46,11 +52,11 @@ pub(super) const RING_STEPS: usize = 11;
 const fn single(list: usize) -> Counts {
     let mut counts = [0; LISTS.len()];
     counts[list] = 1;
-    (counts, 0)
+    (counts, 0, 0)
 }
 
 /// The lists of these counts, with the flags that they imply.
-fn lists((counts, turbulences): Counts) -> Lists {
+fn lists((counts, turbulences, vortices): Counts) -> Lists {
     let count = |name: &str| counts[LISTS.iter().position(|list| *list == name).unwrap()];
     let any = |names: &[&str]| names.iter().any(|name| count(name) > 0);
     let limits_rate = any(&["RATE_LIMITS", "COMMAND_HOLDS"]);
@@ -64,6 +70,7 @@ fn lists((counts, turbulences): Counts) -> Lists {
         counts,
         noise_entries: entries(3, count("NOISES")),
         turbulence_entries: entries(1, turbulences),
+        vortices,
         bursts: (0..bursts).map(|k| (entry(k), k % 2 == 1)).collect(),
         rings: (0..rings).map(|k| k % 2 == 0).collect(),
         ring_steps: RING_STEPS,
@@ -78,14 +85,21 @@ fn lists((counts, turbulences): Counts) -> Lists {
 fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts) -> Shape {
     let channels = match plant {
         PlantKind::Axis => 1,
-        PlantKind::Attitude => 3,
+        PlantKind::Translation | PlantKind::Attitude => 3,
         PlantKind::Thrust | PlantKind::Leg => 6,
     };
+    let vortices = match plant {
+        PlantKind::Translation | PlantKind::Thrust => counts.2,
+        PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 0,
+    };
+    let counts = (counts.0, counts.1, vortices);
     // The commands of those legs are cut whose team is coupled.
     let cut = plant == PlantKind::Leg && coupled;
     let plant_constants = match plant {
         PlantKind::Leg => leg::<false>().model.shader_constants(),
-        PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust => Vec::new(),
+        PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Thrust => {
+            Vec::new()
+        }
     };
     Shape {
         plant,
@@ -121,7 +135,7 @@ pub(super) fn plain() -> Shape {
 
 /// The shapes whose functions are probed: each plant for one agent and for a coupled team, each controller, without and with
 /// signals.
-pub(super) fn probed() -> [Shape; 8] {
+pub(super) fn probed() -> [Shape; 9] {
     [
         shape(PlantKind::Axis, 1, true, false, ALL),
         shape(PlantKind::Axis, 3, false, true, QUIET),
@@ -129,6 +143,7 @@ pub(super) fn probed() -> [Shape; 8] {
         shape(PlantKind::Attitude, 3, true, true, ALL),
         shape(PlantKind::Thrust, 1, false, false, EACH),
         sampled(shape(PlantKind::Thrust, 3, true, true, EACH)),
+        shape(PlantKind::Translation, 3, true, true, BLOWN),
         shape(PlantKind::Leg, 1, false, false, EACH),
         shape(PlantKind::Leg, 2, true, true, NOISY),
     ]
@@ -150,8 +165,10 @@ fn sampled(shape: Shape) -> Shape {
 
 /// The shapes whose text is validated: every plant, controller and team size, each kind of signal on its own, all and none.
 pub(super) fn validated() -> Vec<Shape> {
-    let turbulent = (NONE.0, 1);
-    let counts = (0..LISTS.len()).map(single).chain([turbulent, NONE, ALL]);
+    let (turbulent, blown) = ((NONE.0, 1, 0), (NONE.0, 0, 1));
+    let counts = (0..LISTS.len())
+        .map(single)
+        .chain([turbulent, blown, NONE, ALL]);
     let mut shapes = Vec::new();
     for counts in counts {
         for plant in PLANTS {
@@ -183,6 +200,10 @@ fn uav() -> Uav {
 
 pub(super) fn axis() -> Axis<f32> {
     Axis::new(&uav(), 2)
+}
+
+pub(super) fn translation() -> Translation<f32> {
+    Translation::new(&uav())
 }
 
 pub(super) fn attitude() -> Attitude<f32> {

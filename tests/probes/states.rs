@@ -14,6 +14,7 @@ use crate::model::metric::Sums;
 use crate::model::noise::{Filter, Noise, Turbulence};
 use crate::model::signal::{Signals, Wave};
 use crate::model::switch::{Burst, Switch};
+use crate::model::vortex::Vortex;
 
 /// Purposes of random numbers.
 const CONDITION: u32 = 1;
@@ -211,7 +212,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         signals.ground = std::array::from_fn(|_| some(-1.0, 1.0));
         signals.first_inverse_inertia = std::array::from_fn(|_| some(0.3, 3.0));
         assert_eq!(
-            Lists::of(&signals, lists.ring_steps),
+            Lists::of(&signals, lists.vortices, lists.ring_steps),
             *lists,
             "the flags are those of the model"
         );
@@ -219,6 +220,13 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             initial: std::array::from_fn(|_| std::array::from_fn(|_| some(-1.0, 1.0))),
             signals,
             kappa: some(-0.1, 0.1),
+            vortices: (0..lists.vortices)
+                .map(|_| Vortex {
+                    force: some(0.5, 3.0),
+                    inverse_radius: some(0.3, 2.0),
+                    inverse_length: some(0.5, 4.0),
+                })
+                .collect(),
             first_fault,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::harness::{Compared, Lab};
 use super::world::World;
-use super::{buffers, groups, leg, loops, memory, pure, shapes, signals};
+use super::{buffers, groups, leg, loops, memory, pure, shapes, signals, vortex};
 use crate::model::episode::PlantKind;
 
 /// A probe of one or a few functions.
@@ -26,6 +26,10 @@ macro_rules! over_shapes {
                     (PlantKind::Axis, false) => {
                         $probe(lab, &World::<_, 1, 6, 0>::new(shape, shapes::axis()))
                     }
+                    (PlantKind::Translation, _) => $probe(
+                        lab,
+                        &World::<_, 3, 10, 0>::new(shape, shapes::translation()),
+                    ),
                     (PlantKind::Attitude, true) => {
                         $probe(lab, &World::<_, 3, 10, 0>::new(shape, shapes::attitude()))
                     }
@@ -125,6 +129,11 @@ pub(super) const PURE: &[Probe] = &[
     probe!("address_words", ["address_words"], pure::address_words),
     probe!("body_axis", ["body_axis"], pure::body_axes),
     probe!("clamp", ["clamp"], pure::clamps),
+    probe!(
+        "jets",
+        ["jet_profile", "jet_growth", "jet_share"],
+        vortex::jets
+    ),
 ];
 
 /// What a stage of a step is made of.
@@ -318,6 +327,11 @@ pub(super) const GROUPS: &[Probe] = &[
         over_shapes!(groups::slots)
     ),
     probe!("team_sum", ["team_sum"], over_shapes!(groups::team_sum)),
+    probe!(
+        "vortex_force",
+        ["vortex_force", "vortex_drawn", "agent_place"],
+        over_shapes!(vortex::forces)
+    ),
     probe!(
         "agent_respond",
         ["agent_respond"],

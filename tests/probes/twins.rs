@@ -77,7 +77,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         include_str!("../../src/model/plant_uav.rs"),
         &[
             ("reference", "reference"),
-            ("respond", "axis_respond"),
+            ("answer", "axis_respond"),
             ("respond", "attitude_respond"),
             ("respond", "thrust_respond"),
             ("acceleration", "attitude_acceleration"),
@@ -183,6 +183,16 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
+        "vortex",
+        include_str!("../../src/model/vortex.rs"),
+        &[
+            ("jet_profile", "jet_profile"),
+            ("jet_growth", "jet_growth"),
+            ("jet_share", "jet_share"),
+            ("vortex_force", "vortex_force"),
+        ],
+    ),
+    (
         "agent",
         include_str!("../../src/model/agent.rs"),
         &[
@@ -283,6 +293,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "operators of vectors",
     ),
     (&["evaluate"], "an invocation has one agent"),
+    (&["place_agents"], "every channel publishes its own x"),
 ];
 
 /// Functions of the shaders without a twin in these files: the probe says what they must do.
@@ -302,12 +313,22 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
         "fields of ChannelGains",
     ),
     (&["next_change"], "the model's list of changes"),
-    (&["switch_value", "turbulence_filter"], "fields"),
+    (
+        &["switch_value", "turbulence_filter", "vortex_drawn"],
+        "fields",
+    ),
     (&["own_member"], "the address that the host gives a channel"),
     (&["signals_begin"], "as many turns_add as half steps"),
     (&["add_to_total"], "a line of flush"),
     (
-        &["slot", "command_slot", "seen", "publish", "reference_at"],
+        &[
+            "slot",
+            "command_slot",
+            "seen",
+            "publish",
+            "agent_place",
+            "reference_at",
+        ],
         "indexing",
     ),
     (

@@ -115,7 +115,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         let first = match shape.plant {
             PlantKind::Axis => 2,
             PlantKind::Attitude => 3,
-            PlantKind::Thrust => 0,
+            PlantKind::Translation | PlantKind::Thrust => 0,
             PlantKind::Leg => 6,
         };
         // A span that crosses a flush, a settle step within it, and the table's window ahead of it.

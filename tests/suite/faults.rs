@@ -6,6 +6,7 @@ mod coupling;
 mod independent;
 mod measurement;
 mod plant;
+mod vortex;
 mod wind;
 
 use crate::common::repository;

@@ -19,7 +19,7 @@ mod faults;
 mod mutations;
 mod parity;
 
-use crate::common::repository;
+use crate::common::{altered, repository};
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
 use urts_mc::campaign::{Agent, Campaign};
@@ -43,6 +43,32 @@ fn replaced(name: &str, changes: &[(&str, &str)]) -> Campaign {
 fn mixed(changes: &[(&str, &str)]) -> Campaign {
     replaced("mixed", changes)
 }
+
+/// Jets of rotors and nothing else, between UAVs whose paths cross.
+fn jets(changes: &[(&str, &str)]) -> Campaign {
+    let brief = [
+        ("episodes = 256", "episodes = 8"),
+        ("duration_s = 20.0", "duration_s = 4.0"),
+        // Who is above another, and who beside, changes all the time.
+        ("1.0, 0.1, 0.1, 0.3]", "1.0, 0.0, 0.0, 0.0]"),
+        ("0.5, 0.3, 0.5", "0.5, 2.5, 0.5"),
+        ("observer = \"zero\"", JETS),
+    ];
+    altered("no-fault", &[&brief[..], changes].concat())
+}
+
+const JETS: &str = "
+[[disturbance]]
+kind = \"rotor-vortex\"
+force_n = { uniform = [5.0, 15.0] }
+radius_m = { uniform = [0.5, 1.5] }
+length_m = { uniform = [0.5, 1.5] }
+[[disturbance]]
+kind = \"rotor-vortex\"
+force_n = 4.0
+radius_m = 3.0
+length_m = 0.3
+";
 
 /// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are not.
 fn mixed_biped(changes: &[(&str, &str)]) -> Campaign {

@@ -86,7 +86,9 @@ pub(super) fn shape(
     let episode = draw(campaign, 0);
     let lists = match part.plant {
         PlantKind::Axis => words::lists::<1>(campaign, first, &episode),
-        PlantKind::Attitude => words::lists::<3>(campaign, first, &episode),
+        PlantKind::Translation | PlantKind::Attitude => {
+            words::lists::<3>(campaign, first, &episode)
+        }
         PlantKind::Thrust | PlantKind::Leg => words::lists::<6>(campaign, first, &episode),
     };
     let limits = gpu.limits();

@@ -44,6 +44,8 @@ pub(crate) struct Lists {
     /// The campaign's number of each noise and of each turbulence.
     pub(crate) noise_entries: Vec<u32>,
     pub(crate) turbulence_entries: Vec<u32>,
+    /// How many kinds of jets an agent feels.
+    pub(crate) vortices: usize,
     /// The campaign's number of each burst, and whether it hits all channels of an agent together.
     pub(crate) bursts: Vec<(u32, bool)>,
     /// Whether each ring goes on recording while it plays: first those of commands, then those of measurements.
@@ -128,9 +130,10 @@ pub(crate) fn waves<L: Lane, const NC: usize>(
 }
 
 impl Lists {
-    /// Those of signals that are listed as [`Entries::Possible`]; rings keep up to `ring_steps` samples.
+    /// Those of signals that are listed as [`Entries::Possible`], and of as many vortices; rings keep up to `ring_steps` samples.
     pub(crate) fn of<L: Lane, const NC: usize>(
         signals: &Signals<L, NC>,
+        vortices: usize,
         ring_steps: usize,
     ) -> Self {
         let of_commands = signals.command_rings.iter().map(|ring| ring.records);
@@ -139,6 +142,7 @@ impl Lists {
             counts: switches(signals, 0).map(|list| list.len()),
             noise_entries: signals.noises.iter().map(|noise| noise.entry).collect(),
             turbulence_entries: signals.turbulences.iter().map(|of| of.entry).collect(),
+            vortices,
             bursts: bursts(signals)
                 .map(|burst| (burst.entry, burst.together))
                 .collect(),

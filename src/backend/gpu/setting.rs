@@ -1,14 +1,14 @@
 //! The constants of a group of channels under a controller, as its shaders read them: `Setting` in shaders/episode.wgsl.
 
 use super::words::word;
-use crate::campaign::{Agent, Biped, Campaign};
+use crate::campaign::{Agent, Biped, Campaign, HEIGHT};
 use crate::model::controller::ChannelGains;
 use crate::model::episode::{Controller, Part, PlantKind};
 use crate::model::integrator::Step;
 use crate::model::leg::{LEG_JOINTS, LegWords};
 use crate::model::metric::Limits;
 use crate::model::plant_biped::Leg;
-use crate::model::plant_uav::{Attitude, Axis, Thrust};
+use crate::model::plant_uav::{Attitude, Axis, Thrust, Translation};
 use crate::model::rng::key;
 use bytemuck::{Pod, Zeroable};
 
@@ -74,6 +74,13 @@ impl From<Axis<f32>> for UavWords {
     }
 }
 
+impl From<Translation<f32>> for UavWords {
+    fn from(translation: Translation<f32>) -> Self {
+        // Gravity is that of the height; the shaders know which axis it pulls along.
+        Self::from(translation.axes[HEIGHT])
+    }
+}
+
 impl From<Attitude<f32>> for UavWords {
     fn from(attitude: Attitude<f32>) -> Self {
         Self {
@@ -109,6 +116,12 @@ pub(crate) trait PlantWords {
 }
 
 impl PlantWords for Axis<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Translation<f32> {
     fn bytes(&self) -> Vec<u8> {
         bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
     }
@@ -166,6 +179,7 @@ pub(crate) fn setting(
     bytes.extend(match &campaign.agent {
         Agent::Uav(uav) => match part.plant {
             PlantKind::Axis => Axis::new(uav, part.channels.start).bytes(),
+            PlantKind::Translation => Translation::new(uav).bytes(),
             PlantKind::Attitude => Attitude::new(uav).bytes(),
             _ => Thrust::new(uav).bytes(),
         },

@@ -3,7 +3,7 @@
 
 use super::lists::Lists;
 use super::words::{OUTCOME_WORDS, SHOWN_WORDS, Words};
-use crate::campaign::FIRST_ATTITUDE;
+use crate::campaign::{FIRST_ATTITUDE, HEIGHT};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
@@ -11,6 +11,7 @@ use crate::model::episode::PlantKind;
 use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
 use crate::model::math;
 use crate::model::rng::{self, Stream};
+use crate::model::vortex::{JET_PEAK, JET_SPREAD};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use std::fmt::Write;
 
@@ -31,19 +32,21 @@ const BIPED: [&str; 2] = [
     include_str!("../../../shaders/plant_biped.wgsl"),
 ];
 /// The files that build on a plant.
-const ABOVE: [&str; 7] = [
+const ABOVE: [&str; 8] = [
     include_str!("../../../shaders/switch.wgsl"),
     include_str!("../../../shaders/memory.wgsl"),
     include_str!("../../../shaders/noise.wgsl"),
     include_str!("../../../shaders/signal.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
+    include_str!("../../../shaders/vortex.wgsl"),
     include_str!("../../../shaders/group.wgsl"),
     include_str!("../../../shaders/episode.wgsl"),
 ];
 
 /// The plants, in their order.
-pub(crate) const PLANTS: [PlantKind; 4] = [
+pub(crate) const PLANTS: [PlantKind; 5] = [
     PlantKind::Axis,
+    PlantKind::Translation,
     PlantKind::Attitude,
     PlantKind::Thrust,
     PlantKind::Leg,
@@ -100,7 +103,7 @@ impl Shape {
     pub(crate) fn extra_states(&self) -> usize {
         match self.plant {
             PlantKind::Thrust => FILTER_STATES,
-            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 0,
+            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Leg => 0,
         }
     }
 
@@ -108,7 +111,7 @@ impl Shape {
     pub(crate) fn limited(&self) -> bool {
         match self.plant {
             PlantKind::Thrust | PlantKind::Leg => true,
-            PlantKind::Axis | PlantKind::Attitude => false,
+            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude => false,
         }
     }
 
@@ -116,14 +119,14 @@ impl Shape {
     pub(crate) fn kinds(&self) -> usize {
         match self.plant {
             PlantKind::Thrust => 2,
-            PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 1,
+            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Leg => 1,
         }
     }
 
     /// Numbers that a channel shows to others.
     pub(crate) fn shared(&self) -> usize {
         match self.plant {
-            PlantKind::Axis => 1,
+            PlantKind::Axis | PlantKind::Translation => 1,
             PlantKind::Attitude => 2,
             PlantKind::Leg => 4,
             PlantKind::Thrust => 6,
@@ -154,7 +157,9 @@ impl Shape {
     pub(crate) fn text(&self) -> String {
         let mut text = self.constants();
         let plant: &[&str] = match self.plant {
-            PlantKind::Axis | PlantKind::Attitude | PlantKind::Thrust => &UAV,
+            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Thrust => {
+                &UAV
+            }
             PlantKind::Leg => &BIPED,
         };
         for file in BELOW.iter().chain(plant).chain(&ABOVE) {
@@ -179,6 +184,7 @@ impl Shape {
         text.count("LANES", self.lanes);
         text.count("WORKGROUP", self.workgroup());
         text.count("KINDS", self.kinds());
+        text.count("HEIGHT", HEIGHT);
         text.count("FIRST_ATTITUDE", FIRST_ATTITUDE);
         text.flag("COUPLED", self.coupling != Coupling::None);
         text.flag("CENTROID", self.coupling == Coupling::Centroid);
@@ -198,6 +204,8 @@ impl Shape {
         text.count("EXTRA_STATES", self.extra_states());
         text.count("STATES", FTC_STATES + FILTER_STATES);
         text.count("FLUSH_STEPS", FLUSH_STEPS as usize);
+        text.number("JET_SPREAD", JET_SPREAD);
+        text.number("JET_PEAK", JET_PEAK);
         text.number("FAR_AWAY", FAR_AWAY);
         text.number("MAX", f64::from(f32::MAX));
         text.word("NEVER", u32::MAX);

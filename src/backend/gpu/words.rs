@@ -26,6 +26,8 @@ const FIXED_WORDS: usize = 9;
 const SWITCH_WORDS: usize = 4;
 /// Words of a turbulence: keep, cross, noise (three), output (two), states at the start (two).
 const TURBULENCE_WORDS: usize = 9;
+/// Words of a vortex: force, 1 / radius, 2 / length.
+const VORTEX_WORDS: usize = 3;
 /// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held.
 const MEMORY_WORDS: usize = 4;
 
@@ -51,6 +53,7 @@ impl<'l> Words<'l> {
             + 3 * waves
             + rings
             + TURBULENCE_WORDS * turbulences
+            + VORTEX_WORDS * self.lists.vortices
     }
 
     /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise, states
@@ -97,10 +100,12 @@ impl<'l> Words<'l> {
             ("WAVES", waves),
             ("RINGS", rings),
             ("TURBULENCES", rings + n_rings),
+            ("VORTICES", rings + n_rings + TURBULENCE_WORDS * turbulences),
             ("DRAWN_WORDS", self.drawn()),
             ("N_SWITCHES", lists.switches()),
             ("N_WAVES", n_waves),
             ("N_TURBULENCES", turbulences),
+            ("N_VORTICES", lists.vortices),
             ("FAILED", 0),
             ("OUTSIDE", 1),
             ("OUTSIDE_BEFORE_FAULT", 2),
@@ -148,7 +153,11 @@ pub(crate) fn lists<const NC: usize>(
         episodes: std::slice::from_ref(episode),
     }
     .condition(0, first, Entries::Possible);
-    Lists::of(&condition.signals, ring_steps(campaign))
+    Lists::of(
+        &condition.signals,
+        condition.vortices.len(),
+        ring_steps(campaign),
+    )
 }
 
 /// The longest past that a campaign's channels may have to remember, in steps.
@@ -181,7 +190,9 @@ pub(crate) fn draws(
 ) -> Vec<u32> {
     match shape.plant {
         PlantKind::Axis => draws_of::<1>(campaign, shape, first, episodes),
-        PlantKind::Attitude => draws_of::<3>(campaign, shape, first, episodes),
+        PlantKind::Translation | PlantKind::Attitude => {
+            draws_of::<3>(campaign, shape, first, episodes)
+        }
         PlantKind::Thrust | PlantKind::Leg => draws_of::<6>(campaign, shape, first, episodes),
     }
 }
@@ -262,6 +273,10 @@ pub(crate) fn drawn<const NC: usize>(
         let fixed = [filter.keep, filter.cross].into_iter();
         let numbers = fixed.chain(filter.noise).chain(filter.output);
         words.extend(numbers.chain(turbulence.state[c]).map(f32::to_bits));
+    }
+    for vortex in &condition.vortices {
+        let numbers = [vortex.force, vortex.inverse_radius, vortex.inverse_length];
+        words.extend(numbers.map(f32::to_bits));
     }
     words
 }

@@ -34,6 +34,12 @@ pub struct DisturbanceFile {
     pub altitude_m: Option<Value>,
     /// Turbulence: speed against the air, m/s; at least 0.5, for the model does not hold in still air.
     pub airspeed_m_s: Option<Value>,
+    /// Rotor vortex: the largest force of one jet on the agent, N.
+    pub force_n: Option<Value>,
+    /// Rotor vortex: how far from a jet's axis half of the force is felt, m; at least 0.001.
+    pub radius_m: Option<Value>,
+    /// Rotor vortex: how far below the rotors a jet is felt most, m; at least 0.001.
+    pub length_m: Option<Value>,
     /// Blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<SignalBlock>>,
@@ -52,6 +58,9 @@ pub enum DisturbanceKind {
     Gust1Cosine,
     /// UAV: turbulence at low altitude (MIL-F-8785C) through a drag gain, on x (with the wind), y and z.
     Dryden,
+    /// UAV: the jets that the rotors of the others blow downwards. Who is w below another and rho beside it is pushed down by
+    /// force p(rho / radius) v(2 w / length), where p(s) = 1 / (1 + 0.414 s^2)^2 and v(x) = 27/4 x^2 / (1 + x)^3.
+    RotorVortex,
     /// Biped: the torques J'f with which the ground answers the walk.
     GroundReaction,
 }
@@ -176,6 +185,12 @@ pub struct SignalBlock {
     pub offset_x_m: Option<Value>,
     /// How far to the side, m.
     pub offset_y_m: Option<Value>,
+    /// Largest force of a jet, N.
+    pub force_n: Option<Value>,
+    /// Half-width of a jet, m.
+    pub radius_m: Option<Value>,
+    /// Where a jet is felt most, m.
+    pub length_m: Option<Value>,
 }
 
 /// What fails.

@@ -51,6 +51,24 @@ impl Check<'_> {
                 "use \"sine\" or \"constant\" for a biped",
             ));
         }
+        if kind == DisturbanceKind::RotorVortex {
+            let refused = |limit, remedy| {
+                let key = format!("{table}.kind");
+                Err(self.invalid(key, "\"rotor-vortex\"", limit, remedy))
+            };
+            if !flies {
+                return refused(
+                    "rotors blow on UAVs, not on joints",
+                    "use \"sine\" or \"constant\" for a biped",
+                );
+            }
+            if team == 1 {
+                return refused(
+                    "a UAV alone flies in nobody's jet",
+                    "remove it, or raise agent.team",
+                );
+            }
+        }
         let file = self.with_wind(&table, file)?;
         let file = file.as_ref();
         let parameters = self.parameters(
@@ -81,6 +99,7 @@ impl Check<'_> {
             }
             DisturbanceKind::Constant
             | DisturbanceKind::GroundReaction
+            | DisturbanceKind::RotorVortex
             | DisturbanceKind::Dryden => {}
         }
         Ok(Disturbance { kind, parameters })

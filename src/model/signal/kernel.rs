@@ -1,9 +1,10 @@
-//! The signals of an agent as kernels, which are compiled once per lane type and number of channels, and not into every loop of
+//! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type and number of channels, and not into every loop of
 //! every plant and controller.
 
 use super::Signals;
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};
 use crate::model::memory::Moment;
+use crate::model::vortex::{self, Vortex};
 
 /// [`Signals::hold`], for the start of a step.
 #[inline(always)]
@@ -92,6 +93,30 @@ impl<L: Lane, const NC: usize> Kernel for Distortion<'_, L, NC> {
             off[c] = [seen - position[c], seen_rate - velocity[c]];
         }
         off
+    }
+}
+
+/// [`vortex::vortex_force`].
+#[inline(always)]
+pub(crate) fn vortex_force<L: Lane>(vortices: &[Vortex<L>], own: usize, places: &[[L; 3]]) -> L {
+    L::dispatch(VortexForce {
+        vortices,
+        own,
+        places,
+    })
+}
+
+struct VortexForce<'a, L> {
+    vortices: &'a [Vortex<L>],
+    own: usize,
+    places: &'a [[L; 3]],
+}
+
+impl<L: Lane> Kernel for VortexForce<'_, L> {
+    type Output = L;
+    #[inline(always)]
+    fn run(self) -> L {
+        vortex::vortex_force(self.vortices, self.own, self.places)
     }
 }
 

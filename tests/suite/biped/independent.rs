@@ -85,8 +85,10 @@ impl World {
                 DisturbanceKind::Sine => drawn[0][c] * (drawn[1][c] * t_s + drawn[2][c]).sin(),
                 DisturbanceKind::Constant => drawn[0][c],
                 DisturbanceKind::GroundReaction => drawn[0][c] * ground[c],
-                DisturbanceKind::Gust1Cosine | DisturbanceKind::Dryden => {
-                    panic!("wind does not act on joints")
+                DisturbanceKind::Gust1Cosine
+                | DisturbanceKind::Dryden
+                | DisturbanceKind::RotorVortex => {
+                    panic!("neither wind nor rotors act on joints")
                 }
             });
         }

@@ -2,7 +2,7 @@
 
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
-use super::{fly, replaced};
+use super::{fly, jets, replaced};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
@@ -27,13 +27,26 @@ fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
 fn val_all_faults_of_a_uav_agree() {
     let campaign = replaced("uav_faults", &[]);
     has_all(&campaign, &[]);
-    for kind in [DisturbanceKind::Gust1Cosine, DisturbanceKind::Dryden] {
+    for kind in [
+        DisturbanceKind::Gust1Cosine,
+        DisturbanceKind::Dryden,
+        DisturbanceKind::RotorVortex,
+    ] {
         assert!(campaign.disturbances.iter().any(|one| one.kind == kind));
     }
     let Some([double, single]) = agreement(&campaign) else {
         return;
     };
     assert!(double.compared > 20 && single.compared > 40);
+}
+
+#[test]
+fn val_jets_alone_agree() {
+    let campaign = jets(&[]);
+    let Some([double, single]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared == 24 && single.compared == 24);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! shows nothing.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
-use super::{ALIKE, BRIEF, Gains, fly_all, mixed, mixed_biped, mixed_thrust};
+use super::{ALIKE, BRIEF, Gains, fly_all, jets, mixed, mixed_biped, mixed_thrust};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
@@ -257,6 +257,55 @@ const BIPED: [Mutation; 19] = [
     ),
 ];
 
+/// Noticed of UAVs in each other's jets.
+const JETS: [Mutation; 9] = [
+    (
+        "jets blow upwards",
+        "fma(sum, -vortex.force, force)",
+        "fma(sum, vortex.force, force)",
+    ),
+    (
+        "jets blow along all axes",
+        "N_VORTICES > 0u && own.channel == HEIGHT",
+        "N_VORTICES > 0u",
+    ),
+    (
+        "jets reach up as far as down",
+        "lane_max(other.z - here.z, 0.0)",
+        "abs(other.z - here.z)",
+    ),
+    (
+        "a jet is a little wider",
+        "1.0 / fma(s2, JET_SPREAD, 1.0)",
+        "1.0 / fma(s2, JET_SPREAD * 0.999, 1.0)",
+    ),
+    (
+        "a jet is a little longer",
+        "let near = x * share;",
+        "let near = x * share * 1.001;",
+    ),
+    (
+        "only the first jet is felt",
+        "k < N_VORTICES; k++",
+        "k < 1u; k++",
+    ),
+    (
+        "the last agent has no rotors",
+        "agent < TEAM; agent++",
+        "agent < TEAM - 1u; agent++",
+    ),
+    (
+        "y counts as x",
+        "finite(published[slot(stage, POSITION, 1u, agent)])",
+        "finite(published[slot(stage, POSITION, 0u, agent)])",
+    ),
+    (
+        "gravity pulls along x",
+        "own.channel == HEIGHT));",
+        "own.channel == 0u));",
+    ),
+];
+
 /// A campaign on which mutations must show, flown by the fault-tolerant controller.
 struct Ground {
     campaign: Campaign,
@@ -358,6 +407,18 @@ fn mutations_of_bipeds_are_noticed() {
         "[0.0, 10.0]",
     );
     Ground::new(mixed_biped(&[controllers, kappa])).notices(&gpu, &BIPED);
+}
+
+#[test]
+fn mutations_of_jets_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    // A workgroup of three axes has 16 episodes.
+    let own = [
+        ("episodes = 8", "episodes = 20"),
+        ("duration_s = 4.0", "duration_s = 1.2"),
+        ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
+    ];
+    Ground::new(jets(&own)).notices(&gpu, &JETS);
 }
 
 #[test]
