@@ -184,9 +184,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
             let rows = rows.chunks_exact(NC * P::ROWS);
             for ((agent, place), rows) in self.agents.iter().zip(&mut self.places).zip(rows) {
                 let [position, _] = agent.motion::<P, STAGE>(&setting.plant, rows);
-                for c in 0..FIRST_ATTITUDE {
-                    place[c] = position[c];
-                }
+                place.copy_from_slice(&position[..FIRST_ATTITUDE]);
                 finite(place);
             }
         }

@@ -194,4 +194,52 @@ pub(super) const OF_SIGNALS: &[Control] = &[
         "last_measured = motion;",
         "signals_remember",
     ),
+    control(
+        "vortex",
+        "1.0 / fma(s2, JET_SPREAD, 1.0)",
+        "1.0 / fma(s2, JET_SPREAD * 1.00001, 1.0)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "near * near * (share * JET_PEAK)",
+        "near * share * (share * JET_PEAK)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "lane_max(other.z - here.z, 0.0)",
+        "abs(other.z - here.z)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "fma(ahead, ahead, aside * aside)",
+        "fma(ahead, ahead, ahead * aside)",
+        "jets",
+    ),
+    control(
+        "vortex",
+        "VORTICES + 3u * k",
+        "VORTICES + 2u * k",
+        "vortex_force",
+    ),
+    control(
+        "vortex",
+        "finite(published[slot(stage, POSITION, 1u, agent)])",
+        "published[slot(stage, POSITION, 1u, agent)]",
+        "vortex_force",
+    ),
+    control(
+        "vortex",
+        "fma(sum, -vortex.force, force)",
+        "fma(sum, vortex.force, force)",
+        "vortex_force",
+    ),
+    control(
+        "group",
+        "N_VORTICES > 0u && own.channel == HEIGHT",
+        "N_VORTICES > 0u",
+        "agent_respond",
+    ),
 ];

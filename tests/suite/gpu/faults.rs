@@ -34,10 +34,16 @@ fn val_all_faults_of_a_uav_agree() {
     ] {
         assert!(campaign.disturbances.iter().any(|one| one.kind == kind));
     }
-    let Some([double, single]) = agreement(&campaign) else {
-        return;
-    };
-    assert!(double.compared > 20 && single.compared > 40);
+    // Without jets, each axis flies on its own; they are the last of the disturbances, so what was drawn for the others stays.
+    let mut apart = campaign.clone();
+    let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
+    apart.disturbances.retain(|one| !is_jet(one.kind));
+    for campaign in [campaign, apart] {
+        let Some([double, single]) = agreement(&campaign) else {
+            return;
+        };
+        assert!(double.compared > 20 && single.compared > 40);
+    }
 }
 
 #[test]
