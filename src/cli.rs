@@ -27,6 +27,7 @@ use urts_mc::flight::{Backend, Settings};
 use urts_mc::gains::GainSet;
 use urts_mc::junit::{junit, junit_of_error};
 use urts_mc::output::{OutputDir, OutputError, OutputFile};
+use urts_mc::paper::paper;
 use urts_mc::replay::replay;
 use urts_mc::report::report;
 use urts_mc::run::{Extras, Findings, RunError, run};
@@ -46,6 +47,11 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
         Command::Report { run } => {
             report(&run)?;
             print(&show::report(&run))?;
+            Ok(Code::Done)
+        }
+        Command::Paper { out } => {
+            let claims = paper(&OutputDir::existing(&out))?;
+            print(&show::paper(&claims, &out))?;
             Ok(Code::Done)
         }
         Command::Plan(arguments) => plan_command(&arguments),

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
-//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report
+//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report; paper
 //! ```
 //!
 //! # Invariants
@@ -31,6 +31,7 @@ pub mod manifest;
 pub mod model;
 mod nearest;
 pub mod output;
+pub mod paper;
 pub mod ranking;
 pub mod reference;
 pub mod replay;

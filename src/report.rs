@@ -4,17 +4,18 @@
 
 mod accuracy;
 mod conditions;
-mod document;
+pub(crate) mod document;
 mod evidence;
 mod gains;
 mod html;
-mod markdown;
+pub(crate) mod markdown;
 mod outcome;
-mod panel;
+pub(crate) mod panel;
+pub(crate) mod poster;
 mod provenance;
 mod sheet;
 mod strata;
-mod words;
+pub(crate) mod words;
 
 pub use evidence::ReportError;
 

@@ -70,6 +70,15 @@ pub(crate) enum Command {
         /// Output directory of the run
         run: PathBuf,
     },
+    /// Draw the paper's figures again and hold its claims against what is measured here
+    #[command(after_help = examples(&[
+        "urts-mc paper --out reports/paper",
+    ]))]
+    Paper {
+        /// Output directory
+        #[arg(long, default_value = "reports/paper")]
+        out: PathBuf,
+    },
     /// Tell how many episodes a claim about a failure rate needs
     #[command(after_help = examples(&[
         "urts-mc plan --failure-rate 0.01",

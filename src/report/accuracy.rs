@@ -181,7 +181,8 @@ fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Pane
             ..Axis::new(format!("RMS error, {}", role.unit()))
         },
         y: Axis {
-            range: Some((0.0, 1.02)),
+            // A little room below, so that the labels of both axes do not meet in the corner.
+            range: Some((-0.03, 1.03)),
             ..Axis::new("share of episodes")
         },
         marks: marks.collect(),

@@ -3,7 +3,7 @@
 use super::document::{Block, Cell, Document, Figure, Grid, Scale, Section, Spread};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("style.css");
+const STYLE: &str = concat!(include_str!("colours.css"), include_str!("style.css"));
 /// Width and height of a drawn value, px.
 const BAR: (f64, f64) = (190.0, 16.0);
 /// Letters beyond which the text of a cell is wrapped.

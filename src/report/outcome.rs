@@ -188,7 +188,8 @@ fn survival(evidence: &Evidence) -> Figure {
                 ..Axis::new("time, s")
             },
             y: Axis {
-                range: Some((0.0, 1.02)),
+                // A little room below, so that the labels of both axes do not meet in the corner.
+                range: Some((-0.03, 1.03)),
                 ..Axis::new("share not failed yet")
             },
             marks: marks.collect(),

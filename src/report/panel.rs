@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 /// Width and height of a panel, px: one is as wide as a phone, and three stand side by side on a screen.
 pub(crate) const SIZE: (f64, f64) = (380.0, 250.0);
-/// Points that a line keeps: two per pixel.
-const MOST_POINTS: usize = 760;
+/// Points that a line keeps: more than one per pixel.
+const MOST_POINTS: usize = 400;
 /// Width of a letter of a tick's label, px.
 const LETTER: f64 = 6.6;
 
@@ -339,7 +339,8 @@ fn tick(value: f64, (low, high): (f64, f64), logarithmic: bool) -> String {
     let digits = if logarithmic {
         -size.log10().floor()
     } else {
-        (-((high - low) / 4.0).log10()).ceil()
+        // One more than the distance of the ticks has, for those at quarters; zeros at the end are cut.
+        (-((high - low) / 4.0).log10()).ceil() + 1.0
     };
     #[expect(
         clippy::cast_possible_truncation,
@@ -369,17 +370,24 @@ fn is_labelled(value: f64, (low, high): (f64, f64)) -> bool {
 
 /// Letters of the longest label of an axis.
 fn ticks((low, high): (f64, f64), logarithmic: bool) -> f64 {
-    let step = (high - low) / 5.0;
-    let letters = (0..=5).map(|k| {
-        let value = if logarithmic {
-            low * (high / low).powf(f64::from(k) / 5.0)
-        } else {
-            let digits = 10f64.powf(step.log10().floor());
-            ((low + f64::from(k) * step) / digits).round() * digits
-        };
-        tick(value, (low, high), logarithmic).len()
-    });
-    let longest = letters.max().unwrap_or(1);
+    let candidates: Vec<f64> = if logarithmic {
+        let (first, last) = (low.log10().floor(), high.log10().ceil());
+        let decades = (0..64).map(|k| first + f64::from(k));
+        let decades = decades.take_while(|decade| *decade <= last);
+        decades
+            .flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powf(decade)))
+            .collect()
+    } else {
+        let step = (high - low) / 5.0;
+        let digits = 10f64.powf(step.log10().floor());
+        (0..=5)
+            .map(|k| ((low + f64::from(k) * step) / digits).round() * digits)
+            .collect()
+    };
+    let labels = candidates
+        .into_iter()
+        .map(|value| tick(value, (low, high), logarithmic).len());
+    let longest = labels.max().unwrap_or(1);
     u32::try_from(longest.min(9)).map_or(9.0, f64::from)
 }
 
@@ -401,4 +409,64 @@ pub(crate) fn escaped(text: &str) -> String {
         .replace('<', "&lt;")
         .replace('>', "&gt;")
         .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_have_the_digits_that_tell_them_apart() {
+        let linear = |value, range| tick(value, range, false);
+        assert_eq!(linear(0.25, (0.0, 1.0)), "0.25");
+        assert_eq!(linear(0.2, (0.0, 0.5)), "0.2");
+        assert_eq!(linear(20.0, (0.0, 20.0)), "20");
+        assert_eq!(linear(2.000_005, (2.0, 2.000_02)), "2.000005");
+        assert_eq!(linear(2.5, (0.0, 10.0)), "2.5");
+        assert_eq!(linear(-0.0, (-1.0, 1.0)), "0");
+        assert_eq!(linear(3e6, (0.0, 1e7)), "3e6");
+        assert_eq!(linear(2e-5, (0.0, 1e-4)), "2e-5");
+        let logarithmic = |value, range| tick(value, range, true);
+        assert_eq!(logarithmic(0.05, (0.01, 1.0)), "0.05");
+        assert_eq!(logarithmic(1e-5, (1e-6, 1e-4)), "1e-5");
+        // Over many decades only some of them have labels.
+        let labelled = (-4..=8).filter(|k| !logarithmic(10f64.powi(*k), (1e-4, 1e8)).is_empty());
+        assert_eq!(labelled.count(), 7);
+        assert_eq!(logarithmic(0.05, (1e-4, 1e8)), "");
+    }
+
+    #[test]
+    fn thinning_keeps_every_peak_and_both_ends() {
+        let mut points: Vec<(f64, f64)> = (0..20_000).map(|k| (f64::from(k), 0.0)).collect();
+        points[7_777].1 = 5.0;
+        points[12_345].1 = -3.0;
+        let kept = thinned(&points);
+        assert!(kept.len() <= MOST_POINTS + 1, "{}", kept.len());
+        assert!(kept.contains(&(7_777.0, 5.0)) && kept.contains(&(12_345.0, -3.0)));
+        assert_eq!(kept.first(), points.first());
+        assert_eq!(kept.last(), points.last());
+        assert!(kept.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    }
+
+    #[test]
+    fn a_panel_without_finite_points_says_so_and_others_have_no_size_of_their_own() {
+        let of = |points: Vec<(f64, f64)>| Panel {
+            title: "a < b".into(),
+            x: Axis::new("time, s"),
+            y: Axis::new("e, m"),
+            marks: vec![Mark::Line(points, Ink::Series(0), Stroke::Solid)],
+            ..Panel::default()
+        };
+        let blank = of(vec![(f64::NAN, 1.0), (2.0, f64::INFINITY)]).svg();
+        assert!(blank.contains("no finite values to show") && blank.contains("a &lt; b"));
+        let drawn = of(vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 2.0)]).svg();
+        for svg in [blank, drawn] {
+            assert!(svg.starts_with("<svg") && svg.ends_with("</svg>"), "{svg}");
+            assert!(
+                svg.contains("viewBox=\"0 0 380 250\" class=\"panel\""),
+                "{svg}"
+            );
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+        }
+    }
 }

@@ -17,7 +17,8 @@ pub(crate) fn repository(path: &str) -> PathBuf {
 pub(crate) fn shipped_campaigns() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(repository("campaigns")).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
-    paths.filter(|path| path.is_file()).collect()
+    let is_campaign = |path: &PathBuf| path.extension().is_some_and(|own| own == "toml");
+    paths.filter(is_campaign).collect()
 }
 
 /// A shipped campaign.

@@ -25,6 +25,7 @@
 //! | `lanes` | elementary functions, phases and selections on every lane type |
 //! | `model` | order of the integration, limits, noise, draws |
 //! | `campaigns` | every shipped campaign; what the paper claims |
+//! | `paper` | the paper's figures and claims |
 //! | `readme` | what the README tells its readers to type |
 //! | `report` | what the report of a run says, and what a browser makes of it |
 //! | `cli` | commands, exit codes and error messages |
@@ -58,6 +59,7 @@ mod lanes;
 mod lapack;
 mod leg;
 mod model;
+mod paper;
 mod path;
 mod ranking;
 mod readme;

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 12] = [
+const FILES: [&str; 14] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
@@ -18,6 +18,8 @@ const FILES: [&str; 12] = [
     "manifest.json",
     "ranking.csv",
     "ranking.parquet",
+    "report.html",
+    "report.md",
     "summary.csv",
     "summary.parquet",
     "worst.csv",

@@ -1,0 +1,267 @@
+//! The counterparts of the paper's figures.
+
+use super::Flights;
+use crate::campaign::Campaign;
+use crate::model::Shown;
+use crate::model::episode::Snapshot;
+use crate::reference::Reference;
+use crate::report::panel::{Axis, Ink, Mark, Panel, Stroke};
+use crate::report::poster::poster;
+use std::path::Path;
+
+/// The campaign of Figure 8.
+const WAYPOINTS: &str = include_str!("../../campaigns/waypoints.toml");
+/// Points of a drawn path.
+const PATH_POINTS: u32 = 400;
+
+/// A figure in a file of its own.
+pub(super) struct Figure {
+    pub(super) file: String,
+    pub(super) title: String,
+    pub(super) caption: String,
+    pub(super) svg: String,
+}
+
+/// What a figure shows of every channel.
+struct View {
+    number: u32,
+    what: &'static str,
+    lines: &'static [Line],
+    unit: fn(&str) -> String,
+    pid: bool,
+}
+
+/// A line of a figure.
+struct Line {
+    name: &'static str,
+    ink: Ink,
+    stroke: Stroke,
+    pick: fn(&Shown) -> f64,
+}
+
+const STATES: &[Line] = &[
+    Line {
+        name: "reference r",
+        ink: Ink::Truth,
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.r,
+    },
+    Line {
+        name: "state x",
+        ink: Ink::Series(0),
+        stroke: Stroke::Solid,
+        pick: |shown| shown.x,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.r + shown.e_hat,
+    },
+];
+const ACTUATOR_FAULT: &[Line] = &[
+    Line {
+        name: "actuator fault f1",
+        ink: Ink::Truth,
+        stroke: Stroke::Solid,
+        pick: |shown| shown.f1,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.f1_hat,
+    },
+];
+const SENSOR_FAULT: &[Line] = &[
+    Line {
+        name: "sensor fault f2",
+        ink: Ink::Truth,
+        stroke: Stroke::Solid,
+        pick: |shown| shown.f2,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.f2_hat,
+    },
+];
+const CONTROL: &[Line] = &[Line {
+    name: "control input u",
+    ink: Ink::Series(0),
+    stroke: Stroke::Solid,
+    pick: |shown| shown.u,
+}];
+
+/// All of them, in the paper's order.
+pub(super) fn all(uavs: &Flights, robots: &Flights) -> Vec<Figure> {
+    let length: fn(&str) -> String = |unit| unit.to_string();
+    let acceleration: fn(&str) -> String = |unit| format!("{unit}/s²");
+    let rate: fn(&str) -> String = |unit| format!("{unit}/s");
+    let effort: fn(&str) -> String = |unit| {
+        if unit == "m" {
+            "N".into()
+        } else {
+            "N m".into()
+        }
+    };
+    let view = |number, what, lines, unit, pid| View {
+        number,
+        what,
+        lines,
+        unit,
+        pid,
+    };
+    let of_uavs = [
+        view(11, "states", STATES, length, false),
+        view(12, "actuator fault", ACTUATOR_FAULT, acceleration, false),
+        view(13, "sensor fault", SENSOR_FAULT, rate, false),
+        view(14, "control input", CONTROL, effort, false),
+        view(19, "states under the PID", STATES, length, true),
+    ];
+    let of_robots = [
+        view(15, "states", STATES, length, false),
+        view(16, "actuator fault", ACTUATOR_FAULT, acceleration, false),
+        view(17, "sensor fault", SENSOR_FAULT, rate, false),
+        view(18, "control input", CONTROL, effort, false),
+        view(20, "states under the PID", STATES, length, true),
+    ];
+    let mut figures: Vec<(u32, Figure)> = Vec::new();
+    for view in &of_uavs {
+        figures.push((view.number, of_view(uavs, view, "UAV")));
+    }
+    for view in &of_robots {
+        figures.push((view.number, of_view(robots, view, "robot")));
+    }
+    figures.extend(paths().map(|figure| (8, figure)));
+    figures.extend(walk(robots).map(|figure| (10, figure)));
+    figures.sort_by_key(|(number, _)| *number);
+    figures.into_iter().map(|(_, figure)| figure).collect()
+}
+
+fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
+    let flight: &[Snapshot] = if view.pid { &flights.pid } else { &flights.ftc };
+    let campaign = &flights.campaign;
+    let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
+    let panels: Vec<Panel> = campaign
+        .channels()
+        .iter()
+        .enumerate()
+        .map(|(channel, name)| {
+            let groups = campaign.channel_groups();
+            let group = groups
+                .iter()
+                .find(|group| group.channels.contains(&channel));
+            let unit = group.map_or("", |group| group.role.unit());
+            let marks = view.lines.iter().map(|line| {
+                let points = flights.series(flight, channel, line.pick);
+                Mark::Line(points, line.ink, line.stroke)
+            });
+            Panel {
+                title: name.to_string(),
+                x: Axis {
+                    range: Some((0.0, end_s)),
+                    ..Axis::new("time, s")
+                },
+                y: Axis::new((view.unit)(unit)),
+                marks: marks.collect(),
+                ..Panel::default()
+            }
+        })
+        .collect();
+    let legend: Vec<(Ink, String)> = view
+        .lines
+        .iter()
+        .map(|line| (line.ink, line.name.to_string()))
+        .collect();
+    let title = format!("Figure {}: {agent}, {}", view.number, view.what);
+    Figure {
+        file: format!("figure-{:02}.svg", view.number),
+        caption: format!(
+            "First {agent} of the team under the {}.",
+            if view.pid { "PID" } else { "FTC" }
+        ),
+        svg: poster(&title, &panels, 3, &legend),
+        title,
+    }
+}
+
+/// Figure 8: the planned paths of UAVs, from above and from the side.
+fn paths() -> Option<Figure> {
+    let campaign = Campaign::parse(WAYPOINTS, Path::new("campaigns/waypoints.toml")).ok()?;
+    let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
+    let view = |title: &str, labels: [&str; 2], axes: [usize; 2]| {
+        let of_agent = |agent: usize| {
+            let points = (0..=PATH_POINTS).map(|k| {
+                let t_s = end_s * f64::from(k) / f64::from(PATH_POINTS);
+                let at = campaign.reference.at(agent, t_s);
+                axes.map(|axis| at.get(axis).map_or(f64::NAN, |point| point.value))
+            });
+            let points = points.map(|[a, b]| (a, b)).collect();
+            Mark::Line(points, Ink::Series(agent), Stroke::Solid)
+        };
+        Panel {
+            title: title.into(),
+            x: Axis::new(labels[0]),
+            y: Axis::new(labels[1]),
+            marks: (0..campaign.team).map(of_agent).collect(),
+            equal: true,
+            ..Panel::default()
+        }
+    };
+    let panels = [
+        view("from above", ["x, m", "y, m"], [0, 1]),
+        view("from the side", ["x, m", "z, m"], [0, 2]),
+    ];
+    let legend: Vec<(Ink, String)> = (0..campaign.team)
+        .map(|agent| (Ink::Series(agent), format!("UAV {agent}")))
+        .collect();
+    let title = "Figure 8: planned flight".to_string();
+    Some(Figure {
+        file: "figure-08.svg".into(),
+        caption:
+            "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
+                .into(),
+        svg: poster(&title, &panels, 2, &legend),
+        title,
+    })
+}
+
+/// Figure 10: the planned walk of a robot from above.
+fn walk(robots: &Flights) -> Option<Figure> {
+    let Reference::Walk(walks) = &robots.campaign.reference else {
+        return None;
+    };
+    let walk = &walks.first()?.walk;
+    let com = walk.com.states.iter().map(|[x, y]| (x[0], y[0])).collect();
+    let zmp = walk.com.zmp_m.iter().map(|[x, y]| (*x, *y)).collect();
+    let feet = walk.feet.footholds().into_iter();
+    let feet = feet.map(|foothold| {
+        let [x, y] = foothold.placement.position_m;
+        (x, y)
+    });
+    let panel = Panel {
+        title: "from above".into(),
+        x: Axis::new("x, m"),
+        y: Axis::new("y, m"),
+        marks: vec![
+            Mark::Line(zmp, Ink::Series(1), Stroke::Solid),
+            Mark::Line(com, Ink::Series(0), Stroke::Solid),
+            Mark::Dots(feet.collect(), Ink::Truth),
+        ],
+        ..Panel::default()
+    };
+    let legend = [
+        (Ink::Series(0), "centre of mass".to_string()),
+        (Ink::Series(1), "zero moment point".to_string()),
+        (Ink::Truth, "footholds (ankles)".to_string()),
+    ];
+    let title = "Figure 10: planned walk".to_string();
+    Some(Figure {
+        file: "figure-10.svg".into(),
+        caption: "Straight walk of campaigns/paper-robots.toml; y is drawn larger than x.".into(),
+        svg: poster(&title, &[panel], 1, &legend),
+        title,
+    })
+}

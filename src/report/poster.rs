@@ -1,0 +1,70 @@
+//! Panels in one drawing that stands alone: a figure for a paper, or for a README.
+
+use super::panel::{Ink, Panel, SIZE, escaped};
+
+/// Height of the title, px.
+const TITLE: f64 = 34.0;
+/// Height of a line of the legend, px.
+const LINE: f64 = 20.0;
+/// Width of a letter of the legend, px.
+const LETTER: f64 = 7.4;
+/// The colours that a page gives its panels.
+const COLOURS: &str = include_str!("colours.css");
+
+/// Panels in rows of so many, under a title, with a legend.
+pub(crate) fn poster(
+    title: &str,
+    panels: &[Panel],
+    columns: usize,
+    legend: &[(Ink, String)],
+) -> String {
+    let columns = columns.clamp(1, panels.len().max(1));
+    let rows = panels.len().div_ceil(columns);
+    let width = SIZE.0 * columns as f64;
+    let (entries, head) = legend_of(legend, width);
+    let height = SIZE.1 * rows as f64 + head;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" \
+         aria-label=\"{title}\" font-family=\"system-ui, sans-serif\"><style>{COLOURS}</style>\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"var(--page)\"/>\
+         <text x=\"{}\" y=\"20\" text-anchor=\"middle\" font-size=\"15\" font-weight=\"600\" fill=\"var(--text)\">{title}</text>\
+         {entries}",
+        width / 2.0,
+        title = escaped(title),
+    );
+    for (index, panel) in panels.iter().enumerate() {
+        let place = format!(
+            "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" ",
+            SIZE.0 * (index % columns) as f64,
+            head + SIZE.1 * (index / columns) as f64,
+            SIZE.0,
+            SIZE.1
+        );
+        svg.push_str(&panel.svg().replacen("<svg ", &place, 1));
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// The legend in as many lines as it takes, and where it ends, px.
+fn legend_of(legend: &[(Ink, String)], width: f64) -> (String, f64) {
+    let mut svg = String::new();
+    let (mut x, mut y) = (20.0, TITLE + 0.5 * LINE);
+    for (ink, name) in legend {
+        let own = 45.0 + LETTER * name.chars().count() as f64;
+        if x > 20.0 && x + own > width {
+            (x, y) = (20.0, y + LINE);
+        }
+        svg.push_str(&format!(
+            "<rect x=\"{x}\" y=\"{}\" width=\"18\" height=\"4\" rx=\"2\" fill=\"{}\"/>\
+             <text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"var(--text)\">{}</text>",
+            y - 6.0,
+            ink.css(),
+            x + 25.0,
+            y,
+            escaped(name)
+        ));
+        x += own;
+    }
+    (svg, y + 0.5 * LINE)
+}
