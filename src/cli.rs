@@ -18,7 +18,7 @@ use clap_complete::Shell;
 use progress::Shown;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use terminal::{print, print_json};
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::{Tuning, adapters};
@@ -29,7 +29,7 @@ use urts_mc::junit::{junit, junit_of_error};
 use urts_mc::output::{OutputDir, OutputError, OutputFile};
 use urts_mc::paper::paper;
 use urts_mc::replay::replay;
-use urts_mc::report::report;
+use urts_mc::report::{report, trace};
 use urts_mc::run::{Extras, Findings, RunError, run};
 use urts_mc::shortcomings::{shortcoming, unmet};
 use urts_mc::synthesis::{Preset, synthesize};
@@ -314,29 +314,71 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
         json,
         quiet,
     } = arguments;
-    if let Some(out) = out.as_ref().filter(|out| out.exists() && !overwrite) {
-        return Err(Failure::usage(format!(
-            "--out {}: exists already; give another file, or replace it with --overwrite",
-            out.display()
-        )));
+    let table = match out {
+        Some(out) => out.clone(),
+        None => run.join(format!("replay-{episode}-{controller}.parquet")),
+    };
+    let files = ReplayFiles::beside(table);
+    if out.is_some() {
+        files.may_be_written(*overwrite)?;
     }
-    let path = out
-        .clone()
-        .unwrap_or_else(|| run.join(format!("replay-{episode}-{controller}.parquet")));
-    let asked_for = out.as_deref().map(OutputFile::claim).transpose()?;
     let shown = Shown::of_work("flying the episode again", *quiet);
     let replayed = replay(run, *episode, controller, *interval);
     drop(shown);
     let replayed = replayed?;
-    let file = asked_for.map_or_else(|| OutputFile::claim(&path), Ok)?;
-    file.write_parquet(&replayed.table())?;
+    OutputFile::claim(&files.table)?.write_parquet(&replayed.table())?;
+    let figures = trace(&replayed);
+    OutputFile::claim(&files.page)?.write(figures.html.as_bytes())?;
+    OutputFile::claim(&files.picture)?.write(figures.svg.as_bytes())?;
     let flight = (run.as_path(), *episode, controller.as_str());
     if *json {
-        print_json(&show::replay_json(&replayed, flight, &path))?;
+        print_json(&show::replay_json(&replayed, flight, &files))?;
     } else if !quiet {
-        print(&show::replay(&replayed, flight, &path))?;
+        print(&show::replay(&replayed, flight, &files))?;
     }
     Ok(Code::Done)
+}
+
+/// The files of a replay.
+pub(crate) struct ReplayFiles {
+    /// The trajectories, as Parquet.
+    pub(crate) table: PathBuf,
+    /// The figures, as a page.
+    pub(crate) page: PathBuf,
+    /// The essential figure, as SVG.
+    pub(crate) picture: PathBuf,
+}
+
+impl ReplayFiles {
+    /// The figures stand beside the table under its name.
+    fn beside(table: PathBuf) -> Self {
+        Self {
+            page: table.with_extension("html"),
+            picture: table.with_extension("svg"),
+            table,
+        }
+    }
+
+    /// Finds out whether files that were asked for can be written, before the flight.
+    fn may_be_written(&self, overwrite: bool) -> Result<(), Failure> {
+        let all = [&self.table, &self.page, &self.picture];
+        if all[1..].contains(&&self.table) {
+            return Err(Failure::usage(format!(
+                "--out {}: names the Parquet file, beside which the figures get .html and .svg; give it the ending .parquet",
+                self.table.display()
+            )));
+        }
+        if let Some(taken) = all.iter().find(|path| path.exists() && !overwrite) {
+            return Err(Failure::usage(format!(
+                "--out {}: exists already; give another file, or replace it with --overwrite",
+                taken.display()
+            )));
+        }
+        for path in all {
+            OutputFile::claim(path)?;
+        }
+        Ok(())
+    }
 }
 
 fn completions_command(shell: Shell) -> Result<Code, Failure> {

@@ -83,6 +83,11 @@ fn code_of(error: &anyhow::Error) -> Code {
             Code::Other
         }
     };
+    let of_report = |error: &ReportError| match error {
+        ReportError::Run(error) => of_output(error),
+        ReportError::Campaign(_) => Code::Usage,
+        ReportError::Gains(error) => of_gains(error),
+    };
     if error.is::<urts_mc::campaign::CampaignError>() {
         return Code::Usage;
     }
@@ -90,6 +95,7 @@ fn code_of(error: &anyhow::Error) -> Code {
         Some(RunError::Gains(error)) => return of_gains(error),
         Some(RunError::Output(error)) => return of_output(error),
         Some(RunError::Flight(error)) => return of_flight(error),
+        Some(RunError::Report(error)) => return of_report(error),
         _ => {}
     }
     match error.downcast_ref() {
@@ -98,11 +104,6 @@ fn code_of(error: &anyhow::Error) -> Code {
         Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
         None => {}
     }
-    let of_report = |error: &ReportError| match error {
-        ReportError::Run(error) => of_output(error),
-        ReportError::Campaign(_) => Code::Usage,
-        ReportError::Gains(error) => of_gains(error),
-    };
     if let Some(error) = error.downcast_ref() {
         return of_report(error);
     }

@@ -222,10 +222,9 @@ impl OutputDir {
         for entry in entries {
             let name = entry.file_name();
             let name = name.to_string_lossy();
-            let replay = name.starts_with("replay-") && name.ends_with(".parquet");
             let report = REPORTS.contains(&&*name);
             let half = name.starts_with('.') && name.ends_with(".part");
-            if replay || report || half || is_table(&name) {
+            if is_replay(&name) || report || half || is_table(&name) {
                 remove(entry.path())?;
             }
         }
@@ -334,6 +333,12 @@ fn is_table(name: &str) -> bool {
     TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
 }
 
+/// Whether a file is the table or a figure of a replay.
+fn is_replay(name: &str) -> bool {
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    stem.starts_with("replay-") && ["parquet", "html", "svg"].contains(&extension)
+}
+
 /// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
 fn holds_only_ours(dir: &Path) -> bool {
     let ours = |name: &str| {
@@ -341,7 +346,7 @@ fn holds_only_ours(dir: &Path) -> bool {
             .strip_prefix('.')
             .and_then(|name| name.strip_suffix(".part"))
             .unwrap_or(name);
-        is_table(whole) || whole == "gains.json" || REPORTS.contains(&whole)
+        is_table(whole) || is_replay(whole) || whole == "gains.json" || REPORTS.contains(&whole)
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

@@ -1,7 +1,7 @@
 //! One episode of a run again, with its trajectories.
 
 use crate::attenuation::{Attenuations, Witness};
-use crate::backend::cpu::{Cpu, Precision, Simd};
+use crate::backend::cpu::{Cpu, Precision};
 use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
 use crate::campaign::{Campaign, CampaignError};
 use crate::flight::Engine;
@@ -49,18 +49,35 @@ pub enum ReplayError {
 pub struct Replay {
     /// The run's campaign.
     pub campaign: Campaign,
+    /// Index of the episode.
+    pub episode: u32,
+    /// Which of the campaign's controllers was asked for.
+    pub controller: usize,
     /// Why it was flown in double precision on the CPU, if what flew the run is not to be had here.
     pub stand_in: Option<String>,
     /// How each agent ended; equal to the run's rows, bit by bit in the same arithmetic.
     pub outcomes: Vec<AgentOutcome>,
     /// What every agent and channel showed.
     pub snapshots: Vec<Snapshot>,
+    /// The same episode under the campaign's other controllers, in its order, to look at side by side.
+    pub others: Vec<OtherFlight>,
     /// What inequality (24) says about it, `[agent][channel]`, from a flight in double precision on the CPU.
     pub attenuations: Attenuations,
 }
 
-/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and shows it
-/// every `interval_s` (10 ms, or as near as the step allows).
+/// The episode under a controller that was not asked for.
+#[derive(Debug)]
+pub struct OtherFlight {
+    /// Which of the campaign's controllers.
+    pub controller: usize,
+    /// How each agent ended.
+    pub outcomes: Vec<AgentOutcome>,
+    /// What every agent and channel showed.
+    pub snapshots: Vec<Snapshot>,
+}
+
+/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and under
+/// the campaign's other controllers beside it, and shows it every `interval_s` (10 ms, or as near as the step allows).
 ///
 /// # Errors
 /// If the directory holds no run, or the run has no such episode or controller.
@@ -106,14 +123,21 @@ pub fn replay(
         .legs
         .iter()
         .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
-    let fly_every =
-        |precision, simd, every| on_cpu(&campaign, &gains, precision, simd, episode, index, every);
-    let fly = |precision, simd| fly_every(precision, simd, every);
+    let fly_one = |precision, simd, controller, every| {
+        let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
+        cpu.trace(episode, controller, every)
+    };
+    let fly = |precision, simd| -> Vec<Flown> {
+        let controllers = 0..campaign.controllers.len();
+        controllers
+            .map(|controller| fly_one(precision, simd, controller, every))
+            .collect()
+    };
     // The reference, where what flew the run is not to be had.
     let stand_in = |reason: String| (fly(Precision::F64, None), Some(reason));
     let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
         Some(Engine::Gpu { adapter, .. }) => {
-            match on_gpu(adapter, &campaign, &gains, episode, index, every) {
+            match on_gpu(adapter, &campaign, &gains, episode, every) {
                 Ok(flown) => (flown, None),
                 Err(reason) => stand_in(reason),
             }
@@ -131,14 +155,30 @@ pub fn replay(
             .into());
         }
     };
-    let (outcomes, snapshots) = flown;
+    let mut others: Vec<OtherFlight> = flown
+        .into_iter()
+        .enumerate()
+        .map(|(controller, (outcomes, snapshots))| OtherFlight {
+            controller,
+            outcomes,
+            snapshots,
+        })
+        .collect();
+    let OtherFlight {
+        outcomes,
+        snapshots,
+        ..
+    } = others.remove(index);
     let witness = Witness::new(&campaign, &gains, index);
-    let attenuations = witness.of_episode(episode, || fly_every(Precision::F64, None, 1).1);
+    let attenuations = witness.of_episode(episode, || fly_one(Precision::F64, None, index, 1).1);
     Ok(Replay {
         campaign,
+        episode,
+        controller: index,
         stand_in,
         outcomes,
         snapshots,
+        others,
         attenuations,
     })
 }
@@ -146,27 +186,14 @@ pub fn replay(
 /// How each agent ended, and what it showed.
 type Flown = (Vec<AgentOutcome>, Vec<Snapshot>);
 
-fn on_cpu(
-    campaign: &Campaign,
-    gains: &GainSet,
-    precision: Precision,
-    simd: Option<Simd>,
-    episode: u32,
-    controller: usize,
-    every: u32,
-) -> Flown {
-    Cpu::new(campaign, &gains.loops(), precision, simd).trace(episode, controller, every)
-}
-
-/// Flies on the adapter of the run, or says why that cannot be.
+/// Flies under all controllers on the adapter of the run, or says why that cannot be.
 fn on_gpu(
     adapter: &Adapter,
     campaign: &Campaign,
     gains: &GainSet,
     episode: u32,
-    controller: usize,
     every: u32,
-) -> Result<Flown, String> {
+) -> Result<Vec<Flown>, String> {
     let gpu = Gpu::open(Wanted::Same(adapter)).map_err(|error| error.to_string())?;
     let tuning = Tuning {
         batch: Some(1),
@@ -174,21 +201,21 @@ fn on_gpu(
     };
     let mut flyer =
         GpuFlyer::new(&gpu, campaign, &gains.loops(), tuning).map_err(|error| error.to_string())?;
-    let mut snapshots = Vec::new();
+    let mut snapshots: Vec<Vec<Snapshot>> = vec![Vec::new(); campaign.controllers.len()];
     let flown = flyer
         .trace(&[episode], every, &mut |instant| {
-            snapshots.push(Snapshot {
-                step: instant.step,
-                agents: instant.agents(0, controller),
-                internals: Vec::new(),
-            });
+            for (controller, snapshots) in snapshots.iter_mut().enumerate() {
+                snapshots.push(Snapshot {
+                    step: instant.step,
+                    agents: instant.agents(0, controller),
+                    internals: Vec::new(),
+                });
+            }
         })
         .map_err(|error| error.to_string())?;
-    let outcomes = flown
-        .into_iter()
-        .next()
-        .map(|mut flown| flown.outcomes.swap_remove(controller));
-    Ok((outcomes.unwrap_or_default(), snapshots))
+    let flown = flown.into_iter().next();
+    let outcomes = flown.ok_or("the adapter sent no episode back")?.outcomes;
+    Ok(outcomes.into_iter().zip(snapshots).collect())
 }
 
 /// The steps between two samples.

@@ -15,9 +15,11 @@ pub(crate) mod poster;
 mod provenance;
 mod sheet;
 mod strata;
+mod trace;
 pub(crate) mod words;
 
 pub use evidence::ReportError;
+pub use trace::{Trace, trace};
 
 use crate::output::{OutputDir, REPORTS};
 use crate::shortcomings::{shortcoming, unmet};

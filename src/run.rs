@@ -43,7 +43,7 @@ pub enum RunError {
     },
     /// The report cannot be made of what was written.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Report(#[from] Box<ReportError>),
     /// The manifest cannot be encoded.
     #[error("the manifest cannot be encoded")]
     Manifest(#[from] serde_json::Error),
@@ -232,7 +232,7 @@ pub fn run_on(
         times,
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
-    report(out.path())?;
+    report(out.path()).map_err(Box::new)?;
     Ok(Findings {
         summary,
         comparisons,

@@ -232,10 +232,11 @@ pub(crate) struct ReplayArguments {
     /// Seconds between samples, a multiple of the step [default: 0.01, or as near as the step allows]
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) interval: Option<f64>,
-    /// The Parquet file to write [default: <run>/replay-<episode>-<controller>.parquet]
+    /// The Parquet file to write; the figures stand beside it as .html and .svg
+    /// [default: <run>/replay-<episode>-<controller>.parquet]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
-    /// Replace the file that --out names
+    /// Replace the files that --out names
     #[arg(long)]
     pub(crate) overwrite: bool,
     /// Print as JSON

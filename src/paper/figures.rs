@@ -176,14 +176,13 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
         .map(|line| (line.ink, line.name.to_string()))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
+    let controller = if view.pid { "PID" } else { "FTC" };
+    let caption = format!("First {agent} of the team under the {controller}.");
     Figure {
         file: format!("figure-{:02}.svg", view.number),
-        caption: format!(
-            "First {agent} of the team under the {}.",
-            if view.pid { "PID" } else { "FTC" }
-        ),
-        svg: poster(&title, &panels, 3, &legend),
+        svg: poster(&title, &caption, &panels, 3, &legend),
         title,
+        caption,
     }
 }
 
@@ -218,13 +217,14 @@ fn paths() -> Option<Figure> {
         .map(|agent| (Ink::Series(agent), format!("UAV {agent}")))
         .collect();
     let title = "Figure 8: planned flight".to_string();
+    let caption =
+        "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
+            .to_string();
     Some(Figure {
         file: "figure-08.svg".into(),
-        caption:
-            "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
-                .into(),
-        svg: poster(&title, &panels, 2, &legend),
+        svg: poster(&title, &caption, &panels, 2, &legend),
         title,
+        caption,
     })
 }
 
@@ -258,10 +258,12 @@ fn walk(robots: &Flights) -> Option<Figure> {
         (Ink::Truth, "footholds (ankles)".to_string()),
     ];
     let title = "Figure 10: planned walk".to_string();
+    let caption =
+        "Straight walk of campaigns/paper-robots.toml; y is drawn larger than x.".to_string();
     Some(Figure {
         file: "figure-10.svg".into(),
-        caption: "Straight walk of campaigns/paper-robots.toml; y is drawn larger than x.".into(),
-        svg: poster(&title, &[panel], 1, &legend),
+        svg: poster(&title, &caption, &[panel], 1, &legend),
         title,
+        caption,
     })
 }

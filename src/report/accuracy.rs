@@ -168,7 +168,7 @@ fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Pane
         // The curve goes on as a line to the end of the frame, beyond which the rest lies.
         let end = points
             .clone()
-            .last()
+            .next_back()
             .filter(|_| within < n)
             .map(|(_, share)| (frame, share));
         let points = points.chain(end);

@@ -89,14 +89,18 @@ pub(crate) struct Panel {
     pub(crate) spans: Vec<(f64, f64)>,
     /// Values of y with a line across.
     pub(crate) levels: Vec<f64>,
+    /// Values of x with a line down.
+    pub(crate) moments: Vec<(f64, Ink)>,
     /// Whether a unit is as long along x as along y.
     pub(crate) equal: bool,
+    /// Height, px; that of [`SIZE`] if not given.
+    pub(crate) height: Option<f64>,
 }
 
 impl Panel {
     /// The drawing; of nothing but a sentence where no mark has a finite point.
     pub(crate) fn svg(&self) -> String {
-        let (width, height) = SIZE;
+        let (width, height) = self.size();
         let ends = (self.ends(|x, _| x, &self.x), self.ends(|_, y| y, &self.y));
         let (Some(x_range), Some(mut y_range)) = ends else {
             return self.blank();
@@ -154,13 +158,21 @@ impl Panel {
             let line = ReferenceLine::horizontal(level).with_color(Ink::Limit.css());
             layout = layout.with_reference_line(line);
         }
+        for (moment, ink) in self.moments.iter().filter(|(moment, _)| moment.is_finite()) {
+            let line = ReferenceLine::vertical(*moment).with_color(ink.css());
+            layout = layout.with_reference_line(line);
+        }
         let drawn = SvgBackend::new().render_scene(&render_multiple(plots, layout));
         self.scalable(&drawn)
     }
 
+    fn size(&self) -> (f64, f64) {
+        (SIZE.0, self.height.unwrap_or(SIZE.1))
+    }
+
     /// The drawing without a size of its own, and with a name for those who cannot see it.
     fn scalable(&self, drawn: &str) -> String {
-        let (width, height) = SIZE;
+        let (width, height) = self.size();
         let fixed = format!("width=\"{width}\" height=\"{height}\"");
         let label = format!("{}: {} over {}", self.title, self.y.label, self.x.label);
         let free = format!(
@@ -172,7 +184,7 @@ impl Panel {
 
     /// A panel without anything to show, which says so.
     fn blank(&self) -> String {
-        let (width, height) = SIZE;
+        let (width, height) = self.size();
         let text = |y: f64, text: &str| {
             format!(
                 "<text x=\"{}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"12\" fill=\"var(--text)\">{}</text>",
@@ -220,7 +232,7 @@ impl Panel {
                 .pieces(points)
                 .map(|piece| {
                     let line = LinePlot::new()
-                        .with_data(thinned(piece))
+                        .with_data(thinned(piece, MOST_POINTS))
                         .with_color(ink.css())
                         .with_stroke_width(1.6);
                     Plot::Line(match stroke {
@@ -277,12 +289,12 @@ impl Panel {
 }
 
 /// A line with no more points than can be seen: of each stretch its lowest and its highest, so that no peak is lost.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= MOST_POINTS {
+pub(crate) fn thinned(points: &[(f64, f64)], most: usize) -> Vec<(f64, f64)> {
+    if points.len() <= most {
         return points.to_vec();
     }
-    let stretch = points.len().div_ceil(MOST_POINTS / 2);
-    let mut kept = Vec::with_capacity(MOST_POINTS + 1);
+    let stretch = points.len().div_ceil((most / 2).max(1));
+    let mut kept = Vec::with_capacity(most + 1);
     for stretch in points.chunks(stretch) {
         let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
         let ends = (
@@ -331,7 +343,7 @@ fn tick(value: f64, (low, high): (f64, f64), logarithmic: bool) -> String {
         return String::new();
     }
     if size != 0.0
-        && (size >= 1e5 || size < 1e-3)
+        && !(1e-3..1e5).contains(&size)
         && (logarithmic || high - low >= 1e5 || high - low < 1e-3)
     {
         return format!("{value:.1e}").replace(".0e", "e");
@@ -440,7 +452,7 @@ mod tests {
         let mut points: Vec<(f64, f64)> = (0..20_000).map(|k| (f64::from(k), 0.0)).collect();
         points[7_777].1 = 5.0;
         points[12_345].1 = -3.0;
-        let kept = thinned(&points);
+        let kept = thinned(&points, MOST_POINTS);
         assert!(kept.len() <= MOST_POINTS + 1, "{}", kept.len());
         assert!(kept.contains(&(7_777.0, 5.0)) && kept.contains(&(12_345.0, -3.0)));
         assert_eq!(kept.first(), points.first());

@@ -2,8 +2,8 @@
 
 use super::panel::{Ink, Panel, SIZE, escaped};
 
-/// Height of the title, px.
-const TITLE: f64 = 34.0;
+/// Height of title and explanation, px.
+const TITLE: f64 = 50.0;
 /// Height of a line of the legend, px.
 const LINE: f64 = 20.0;
 /// Width of a letter of the legend, px.
@@ -11,9 +11,10 @@ const LETTER: f64 = 7.4;
 /// The colours that a page gives its panels.
 const COLOURS: &str = include_str!("colours.css");
 
-/// Panels in rows of so many, under a title, with a legend.
+/// Panels in rows of so many, under a title and a line of explanation, with a legend.
 pub(crate) fn poster(
     title: &str,
+    subtitle: &str,
     panels: &[Panel],
     columns: usize,
     legend: &[(Ink, String)],
@@ -24,12 +25,12 @@ pub(crate) fn poster(
     let (entries, head) = legend_of(legend, width);
     let height = SIZE.1 * rows as f64 + head;
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
          aria-label=\"{title}\" font-family=\"system-ui, sans-serif\"><style>{COLOURS}</style>\
          <rect width=\"{width}\" height=\"{height}\" fill=\"var(--page)\"/>\
-         <text x=\"{}\" y=\"20\" text-anchor=\"middle\" font-size=\"15\" font-weight=\"600\" fill=\"var(--text)\">{title}</text>\
-         {entries}",
-        width / 2.0,
+         <text x=\"20\" y=\"24\" font-size=\"16\" font-weight=\"600\" fill=\"var(--text)\">{title}</text>\
+         <text x=\"20\" y=\"44\" font-size=\"12\" fill=\"var(--quiet)\">{}</text>{entries}",
+        escaped(subtitle),
         title = escaped(title),
     );
     for (index, panel) in panels.iter().enumerate() {

@@ -21,8 +21,8 @@ pub(crate) fn section(evidence: &Evidence) -> Option<Section> {
     let mut forest = Grid {
         head: vec![
             "stratum".into(),
-            "episodes".into(),
             format!("failure rate: {}", names.join(", ")),
+            "episodes".into(),
         ],
         rows: Vec::new(),
     };
@@ -38,8 +38,8 @@ pub(crate) fn section(evidence: &Evidence) -> Option<Section> {
         }
         forest.rows.push(vec![
             Cell::text(&*stratum.name),
-            Cell::number(format!("{n:.0}")),
             Cell::Spreads(rates),
+            Cell::number(format!("{n:.0}")),
         ]);
     }
     let mut blocks = hurting(evidence);

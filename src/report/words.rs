@@ -38,7 +38,7 @@ pub(crate) fn number(value: f64) -> String {
         () if value.is_nan() => "-".to_string(),
         () if value.is_infinite() => if value > 0.0 { "∞" } else { "-∞" }.to_string(),
         () if size == 0.0 => "0".to_string(),
-        () if size >= 1e5 || size < 1e-3 => format!("{value:.2e}"),
+        () if !(1e-3..1e5).contains(&size) => format!("{value:.2e}"),
         () if size >= 1000.0 => format!("{value:.0}"),
         () if size >= 100.0 => format!("{value:.1}"),
         () if size >= 10.0 => format!("{value:.2}"),

@@ -3,6 +3,7 @@
 use super::findings_json::finite;
 use super::style::{bad, heading};
 use super::{attenuation, line};
+use crate::cli::ReplayFiles;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ use urts_mc::tables::{Status, status};
 pub(crate) fn replay(
     replay: &Replay,
     (_, episode, controller): (&Path, u32, &str),
-    path: &Path,
+    files: &ReplayFiles,
 ) -> String {
     let mut text = String::new();
     let channels = replay.campaign.channels();
@@ -67,9 +68,11 @@ pub(crate) fn replay(
     line(
         &mut text,
         &format!(
-            "written to {} ({} samples)",
-            path.display(),
-            replay.snapshots.len()
+            "written to {} ({} samples), the figures to {} and {}",
+            files.table.display(),
+            replay.snapshots.len(),
+            files.page.display(),
+            files.picture.display()
         ),
     );
     text
@@ -91,7 +94,7 @@ type Found = Result<Attenuation, NotApplicable>;
 pub(crate) fn replay_json(
     replay: &Replay,
     (run, episode, controller): (&Path, u32, &str),
-    path: &Path,
+    files: &ReplayFiles,
 ) -> Value {
     let campaign = &replay.campaign;
     let agents = replay.outcomes.iter().zip(&replay.attenuations);
@@ -120,7 +123,8 @@ pub(crate) fn replay_json(
     };
     json!({
         "run": run.display().to_string(), "episode": episode, "controller": controller,
-        "file": path.display().to_string(), "samples": replay.snapshots.len(),
+        "file": files.table.display().to_string(), "samples": replay.snapshots.len(),
+        "figures": [files.page.display().to_string(), files.picture.display().to_string()],
         "stand_in": replay.stand_in,
         "agents": agents.enumerate().map(of_agent).collect::<Vec<_>>(),
     })

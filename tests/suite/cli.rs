@@ -10,6 +10,7 @@ mod junit;
 mod output;
 mod results;
 mod terminal;
+mod traces;
 mod usage;
 
 use crate::common::repository;

@@ -160,7 +160,8 @@ fn files(
                 fs::read(entry.path()).unwrap(),
             )
         })
-        .filter(|(name, _)| name != "manifest.json")
+        // These say when, where and on what the run was flown.
+        .filter(|(name, _)| name != "manifest.json" && !name.starts_with("report."))
         .collect();
     files.sort();
     files

@@ -120,7 +120,7 @@ fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
     let place = Place::smoke(&[]);
     place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
     place.succeeds(&["replay", "out", "--episode", "0"]);
-    assert_eq!(names(&place.path("out")).len(), FILES.len() + 3);
+    assert_eq!(names(&place.path("out")).len(), FILES.len() + 5);
     place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "4"]);
     assert_eq!(names(&place.path("out")), FILES);
 }

@@ -1,0 +1,71 @@
+//! The essential figures as one picture: a column for each controller, a row for each quantity.
+
+use super::super::panel::Ink;
+use super::super::poster::poster;
+use super::curves::{Quantity, panel};
+use super::scene::Scene;
+
+/// What the picture shows.
+const ROWS: [Quantity; 4] = [
+    Quantity::Error,
+    Quantity::ActuatorFault,
+    Quantity::SensorFault,
+    Quantity::Command,
+];
+/// The agent that fared worst in the channel of its largest error.
+pub(super) fn svg(scene: &Scene<'_>) -> String {
+    let agent = scene.worst_agent();
+    let (channel, _) = scene.error_of(agent);
+    let (mut panels, mut cut) = (Vec::new(), false);
+    for quantity in ROWS {
+        for flight in &scene.flights {
+            let (mut drawn, leaves) = panel(scene, quantity, (agent, channel), &[*flight]);
+            cut |= leaves;
+            drawn.title = format!("{}: {}", flight.name, quantity.name());
+            panels.push(drawn);
+        }
+    }
+    let mut legend = legend(scene);
+    if panels.iter().any(|panel| !panel.spans.is_empty()) {
+        legend.push((Ink::Fault, "shaded: a fault strikes".to_string()));
+    }
+    if panels.iter().any(|panel| !panel.levels.is_empty()) {
+        legend.push((Ink::Limit, "limit".to_string()));
+    }
+    let campaign = scene.campaign;
+    let title = format!(
+        "{}, episode {}: {} of agent {agent}",
+        campaign.name,
+        scene.episode.index,
+        campaign.channels()[channel]
+    );
+    let subtitle = format!(
+        "seed {}; the channel with the largest error{}{}",
+        campaign.seed,
+        match campaign.team {
+            1 => "",
+            _ => " of the agent that fared worst",
+        },
+        match cut {
+            true => "; peaks leave the frame",
+            false => "",
+        }
+    );
+    poster(&title, &subtitle, &panels, scene.flights.len(), &legend)
+}
+
+/// Colours and what they mean.
+fn legend(scene: &Scene<'_>) -> Vec<(Ink, String)> {
+    let flights = scene.flights.iter();
+    let mut legend: Vec<(Ink, String)> = flights
+        .map(|flight| (flight.ink(), flight.name.to_string()))
+        .collect();
+    legend.extend([
+        (scene.estimate_ink(), "estimate of e".to_string()),
+        (
+            Ink::Truth,
+            "f1, f2; their estimates in the colour of the controller".to_string(),
+        ),
+    ]);
+    legend
+}
