@@ -227,10 +227,8 @@ impl<'a> Witness<'a> {
 
     /// The theorem of each channel, or what is known before the flight to keep it from saying anything: `[agent][channel]`.
     fn known(&self, episode: &Episode) -> Vec<Vec<Result<&Theorem, NotApplicable>>> {
-        let groups = self.campaign.channel_groups();
         let of_channel = |agent: usize, channel: usize| {
-            let is_in = |group: &ChannelGroup| group.channels.contains(&channel);
-            let group = groups.iter().position(is_in).unwrap_or_default();
+            let group = self.campaign.group_of(channel);
             let theorem = self.theorems[group].as_ref().map_err(Clone::clone)?;
             obstacle(self.campaign, &episode.agents[agent], channel).map_or(Ok(theorem), Err)
         };

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
-//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report; paper
+//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report (caveats); paper
 //! ```
 //!
 //! # Invariants
@@ -20,6 +20,7 @@
 pub mod attenuation;
 pub mod backend;
 pub mod campaign;
+pub mod caveats;
 pub mod comparison;
 pub mod conditions;
 pub mod cross_check;
@@ -44,3 +45,4 @@ pub mod statistics;
 pub mod stop;
 pub mod synthesis;
 pub mod tables;
+pub mod words;

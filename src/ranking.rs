@@ -6,6 +6,7 @@ use crate::conditions::fault_of;
 use crate::sampling::{Method, allows};
 use crate::statistics::{Effect, Interval, Outcome, Permutations, Ranked, effects, holm};
 use crate::tables::{Scores, Status, Table};
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// Random permutations of a test: enough for a family of 100 conditions at the level of 5 %, each tested in two ways.
@@ -55,7 +56,9 @@ pub struct WorstEpisode {
     pub status: Status,
     /// Largest |e| over its limit in the verdict, or in m or rad where there is none; infinite after a divergence.
     pub excess: f64,
-    /// The agent and channel of this largest error.
+    /// When an agent first broke max_error or left the numbers, s.
+    pub failed_at_s: Option<f64>,
+    /// The agent and channel of this largest error; after a divergence those of the agent that failed first.
     pub agent: usize,
     /// The channel.
     pub channel: Arc<str>,
@@ -174,57 +177,109 @@ fn targets(campaign: &Campaign, scores: &Scores) -> Vec<(Target, Outcome)> {
     targets
 }
 
-/// The worst episodes of each controller, worst first: by how they ended, then by the largest error over its limit.
+/// The worst episodes of each controller, worst first: by how they ended, then by the largest error over its limit; of those that
+/// diverged, the earlier the worse.
 #[must_use]
 pub fn worst(campaign: &Campaign, scores: &Scores) -> Vec<WorstEpisode> {
-    let channels = campaign.channels();
-    let stride = campaign.team * channels.len();
-    let mut all = Vec::new();
-    for (index, name) in campaign.controllers.iter().enumerate() {
-        let mut episodes: Vec<(Status, f64, usize, usize)> = scores.status[index]
-            .iter()
-            .enumerate()
-            .map(|(episode, status)| {
-                let errors = &scores.max_abs[index][episode * stride..(episode + 1) * stride];
-                let over = |(place, error): (usize, &f64)| {
-                    let limit = campaign.verdict.max_error[place % channels.len()];
-                    let limit = if limit.is_finite() { limit } else { 1.0 };
-                    // What left the numbers is as large as can be.
-                    let excess = if error.is_nan() {
-                        f64::INFINITY
-                    } else {
-                        error / limit
-                    };
-                    (excess, place)
-                };
-                let worst = errors.iter().enumerate().map(over);
-                let (excess, place) = worst
-                    .reduce(|a, b| if b.0 > a.0 { b } else { a })
-                    .unwrap_or((0.0, 0));
-                (*status, excess, episode, place)
-            })
+    let of_controller = |(index, name): (usize, &String)| {
+        let episodes = 0..scores.episodes();
+        let mut bad: Vec<Bad> = episodes
+            .map(|k| Bad::of(campaign, scores, index, k))
             .collect();
-        episodes.sort_by(|a, b| b.0.cmp(&a.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2)));
-        let of_rank = |(rank, bad): (usize, (Status, f64, usize, usize))| {
-            let (status, excess, episode, place) = bad;
-            WorstEpisode {
-                controller: name.clone(),
-                rank: rank + 1,
-                episode: u32::try_from(episode).unwrap_or(u32::MAX),
-                status,
-                excess,
-                agent: place / channels.len(),
-                channel: channels[place % channels.len()].clone(),
-                conditions: scores
-                    .conditions
-                    .iter()
-                    .map(|(name, values)| (name.clone(), values[episode]))
-                    .collect(),
-            }
+        bad.sort_by(Bad::order);
+        let ranked = bad.into_iter().take(WORST).enumerate();
+        let named = ranked.map(|(rank, bad)| bad.named(campaign, scores, name, rank + 1));
+        named.collect::<Vec<_>>()
+    };
+    let controllers = campaign.controllers.iter().enumerate();
+    controllers.flat_map(of_controller).collect()
+}
+
+/// How bad an episode was under a controller.
+struct Bad {
+    status: Status,
+    excess: f64,
+    /// Step of the first failure; the last possible one where no single step failed.
+    failed_step: u32,
+    episode: usize,
+    agent: usize,
+    channel: usize,
+}
+
+impl Bad {
+    fn of(campaign: &Campaign, scores: &Scores, controller: usize, episode: usize) -> Self {
+        let (team, channels) = (campaign.team, campaign.channels().len());
+        let status = scores.status[controller][episode];
+        let steps = &scores.failed_step[controller][episode * team..(episode + 1) * team];
+        let step = |agent: usize| steps[agent].unwrap_or(u32::MAX);
+        let first = (0..team).min_by_key(|&agent| step(agent)).unwrap_or(0);
+        let errors = &scores.max_abs[controller][episode * team * channels..];
+        // Whom a flight that diverges pulls along is not to blame.
+        let agents = match status {
+            Status::Diverged => first..first + 1,
+            Status::Ok | Status::Exceeded => 0..team,
         };
-        all.extend(episodes.into_iter().take(WORST).enumerate().map(of_rank));
+        let over = |(agent, channel): (usize, usize)| {
+            let limit = campaign.verdict.max_error[channel];
+            let limit = if limit.is_finite() { limit } else { 1.0 };
+            let excess = match errors[agent * channels + channel] / limit {
+                // What left the numbers is as large as can be.
+                excess if excess.is_nan() => f64::INFINITY,
+                excess => excess,
+            };
+            (excess, agent, channel)
+        };
+        let places = agents.flat_map(|agent| (0..channels).map(move |channel| (agent, channel)));
+        let largest = places
+            .map(over)
+            .reduce(|a, b| if b.0 > a.0 { b } else { a });
+        let (excess, agent, channel) = largest.unwrap_or_default();
+        Self {
+            status,
+            excess,
+            failed_step: step(first),
+            episode,
+            agent,
+            channel,
+        }
     }
-    all
+
+    /// Worst first.
+    fn order(&self, other: &Self) -> Ordering {
+        let by_size = match self.status {
+            Status::Diverged => self.failed_step.cmp(&other.failed_step),
+            Status::Ok | Status::Exceeded => other.excess.total_cmp(&self.excess),
+        };
+        let by_status = other.status.cmp(&self.status);
+        by_status
+            .then(by_size)
+            .then(self.episode.cmp(&other.episode))
+    }
+
+    fn named(
+        self,
+        campaign: &Campaign,
+        scores: &Scores,
+        controller: &str,
+        rank: usize,
+    ) -> WorstEpisode {
+        let time = campaign.time;
+        let conditions = scores.conditions.iter();
+        WorstEpisode {
+            controller: controller.to_string(),
+            rank,
+            episode: u32::try_from(self.episode).unwrap_or(u32::MAX),
+            status: self.status,
+            excess: self.excess,
+            failed_at_s: (self.failed_step != u32::MAX)
+                .then(|| f64::from(self.failed_step) * time.step_s),
+            agent: self.agent,
+            channel: campaign.channels()[self.channel].clone(),
+            conditions: conditions
+                .map(|(name, values)| (name.clone(), values[self.episode]))
+                .collect(),
+        }
+    }
 }
 
 /// [`rank`] as a table.
@@ -271,6 +326,7 @@ pub fn worst_table(worst: &[WorstEpisode]) -> Table {
             .count(|| "episode".into(), u64::from(episode.episode))
             .word(|| "status".into(), episode.status.word())
             .real(|| "largest_error_over_limit".into(), episode.excess)
+            .real_if("failed_at_s", episode.failed_at_s)
             .count(|| "agent".into(), episode.agent as u64)
             .name(|| "channel".into(), episode.channel.clone());
         for (name, value) in &episode.conditions {

@@ -16,7 +16,6 @@ mod provenance;
 mod sheet;
 mod strata;
 mod trace;
-pub(crate) mod words;
 
 pub use evidence::ReportError;
 pub use trace::{Trace, trace};

@@ -1,7 +1,6 @@
 //! What the commands print.
 
 mod attenuation;
-mod caveats;
 mod conclusion;
 mod devices;
 mod findings;

@@ -155,6 +155,8 @@ pub struct Scores {
     pub rmse: Vec<Vec<f64>>,
     /// Largest error, laid out like `rmse`.
     pub max_abs: Vec<Vec<f64>>,
+    /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
+    pub failed_step: Vec<Vec<Option<u32>>>,
     /// Whether an agent of the episode has the fault, `[fault][episode]`.
     pub fault_occurs: Vec<Vec<bool>>,
     /// What each episode met: the name of a condition, and its size by episode ([`crate::conditions`]).
@@ -210,6 +212,7 @@ impl Tables {
                 status: vec![Vec::new(); controllers],
                 rmse: vec![Vec::new(); controllers],
                 max_abs: vec![Vec::new(); controllers],
+                failed_step: vec![Vec::new(); controllers],
                 fault_occurs: vec![Vec::new(); campaign.faults.len()],
                 conditions: Vec::new(),
             },
@@ -242,6 +245,8 @@ impl Tables {
                 .max()
                 .unwrap_or(Status::Ok);
             self.scores.status[controller].push(worst);
+            self.scores.failed_step[controller]
+                .extend(outcomes.iter().map(|outcome| outcome.failed_step));
             for ((agent, judged), draw) in (0u64..).zip(&agents).zip(draws) {
                 let key = |row: &mut Row<'_>| {
                     row.count(|| "episode".into(), u64::from(flown.episode.index))

@@ -188,6 +188,25 @@ impl Campaign {
         self.agent.channel_groups()
     }
 
+    /// The index of a channel's group.
+    #[must_use]
+    pub fn group_of(&self, channel: usize) -> usize {
+        let groups = self.channel_groups();
+        let own = groups
+            .iter()
+            .position(|own| own.channels.contains(&channel));
+        own.unwrap_or_default()
+    }
+
+    /// The unit of a channel's error, m or rad.
+    #[must_use]
+    pub fn unit(&self, channel: usize) -> &'static str {
+        let groups = self.channel_groups();
+        groups
+            .get(self.group_of(channel))
+            .map_or("", |own| own.role.unit())
+    }
+
     /// Whether limits cut the commands.
     #[must_use]
     pub fn is_limited(&self) -> bool {

@@ -55,10 +55,14 @@ fn of_pair(pair: &PairedComparison) -> String {
         return of_one_episode(pair, &groups);
     }
     let (by_failures, failing) = failing(pair, n);
-    let (sides, errors): (Vec<Side>, Vec<String>) =
+    let (sides, errors): (Vec<Option<Side>>, Vec<String>) =
         groups.iter().map(|group| error_of(group)).unzip();
-    let any = |wanted| by_failures == wanted || sides.contains(&wanted);
-    let all = |wanted| sides.iter().all(|own| *own == wanted);
+    let errors = match sides.iter().all(|own| *own == Some(Side::Unsure)) {
+        true => "not clearly different".to_string(),
+        false => errors.join(" and "),
+    };
+    let any = |wanted| by_failures == wanted || sides.contains(&Some(wanted));
+    let all = |wanted| sides.iter().all(|own| *own == Some(wanted));
     let (a, b) = (&pair.a, &pair.b);
     let opening = match (any(Side::Better), any(Side::Worse)) {
         (true, false) => format!("{a} does better than {b}"),
@@ -72,10 +76,7 @@ fn of_pair(pair: &PairedComparison) -> String {
         (true, true) => format!("{a} is in part better and in part worse than {b}"),
         (false, false) => format!("{n} episodes do not tell {a} and {b} apart"),
     };
-    format!(
-        "{opening}: {failing}; in the median its RMS error is {}",
-        errors.join(" and ")
-    )
+    format!("{opening}: {failing}; in the median its RMS error is {errors}")
 }
 
 /// What a single episode shows.
@@ -106,6 +107,9 @@ fn failing(pair: &PairedComparison, n: u64) -> (Side, String) {
     if of_a + of_b == 0 {
         return (Side::Unsure, "neither fails".to_string());
     }
+    if failures.both == n {
+        return (Side::Unsure, "both fail in every episode".to_string());
+    }
     let percent = |count: u64| 100.0 * count as f64 / n.max(1) as f64;
     let rates = format!(
         "it fails in {:.1} % of the episodes, the other in {:.1} %",
@@ -115,23 +119,24 @@ fn failing(pair: &PairedComparison, n: u64) -> (Side, String) {
     let interval = pair.difference.and_then(|found| found.interval);
     // Fewer failures are better.
     let side = interval.map_or(Side::Unsure, |own| side(-own.upper, -own.lower));
-    let points = interval.map_or(String::new(), |Interval { lower, upper }| {
-        let value = percent(of_a) - percent(of_b);
-        format!(
+    let value = percent(of_a) - percent(of_b);
+    let points = match interval {
+        Some(Interval { lower, upper }) => format!(
             " ({value:+.1} points [{:+.1}, {:+.1}])",
             100.0 * lower,
             100.0 * upper
-        )
-    });
-    let unclear = match side {
-        Side::Unsure => ", no clear difference",
+        ),
+        None => format!(" ({value:+.1} points, no interval)"),
+    };
+    let unclear = match (side, interval) {
+        (Side::Unsure, Some(_)) => ", no clear difference",
         _ => "",
     };
     (side, format!("{rates}{points}{unclear}"))
 }
 
-/// Whether the errors of `a` are smaller on a group of channels.
-fn error_of(ratio: &Ratio) -> (Side, String) {
+/// Whether the errors of `a` are smaller on a group of channels; none where no interval tells.
+fn error_of(ratio: &Ratio) -> (Option<Side>, String) {
     let name = &ratio.name;
     let found = ratio
         .over_replicates
@@ -141,10 +146,12 @@ fn error_of(ratio: &Ratio) -> (Side, String) {
         })
         .or(ratio.log_ratio);
     let interval = found.and_then(|found| found.interval);
-    let side = interval.map_or(Side::Unsure, |own| side(own.lower, own.upper));
+    let side = interval.map(|own| side(own.lower, own.upper));
     let words = match (side, found) {
-        (Side::Unsure, _) | (_, None) => format!("not clearly different in {name}"),
-        (_, Some(found)) => format!("{} in {name}", times(found.value, interval)),
+        (_, None) => format!("unknown in {name}"),
+        (None, Some(found)) => format!("{} in {name} (no interval)", times(found.value, None)),
+        (Some(Side::Unsure), _) => format!("not clearly different in {name}"),
+        (Some(_), Some(found)) => format!("{} in {name}", times(found.value, interval)),
     };
     (side, words)
 }
@@ -185,7 +192,7 @@ fn times(log_ratio: f64, interval: Option<Interval>) -> String {
         };
         format!(" [{}, {}]", number(low), number(high))
     });
-    if log_ratio == 0.0 {
+    if log_ratio == 0.0 || interval.is_none() && number(log_ratio) == "1.00" {
         "as large".to_string()
     } else if log_ratio.is_infinite() {
         format!("{word} beyond measure{ends}, as a diverged flight counts,")

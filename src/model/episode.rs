@@ -224,14 +224,9 @@ impl<R: Real> Flight<'_, R> {
         let campaign = &self.model.campaign;
         let first = part.channels.start;
         let verdict = &campaign.verdict;
-        let groups = campaign.channel_groups();
-        let group_of = |channel: usize| {
-            let is_in = |group: &campaign::ChannelGroup| group.channels.contains(&channel);
-            groups.iter().position(is_in).unwrap_or_default()
-        };
         let setting = Setting {
             plant,
-            gains: std::array::from_fn(|c| self.controller.gains[group_of(first + c)]),
+            gains: std::array::from_fn(|c| self.controller.gains[campaign.group_of(first + c)]),
             limits: std::array::from_fn(|c| {
                 Limits::new(
                     verdict.max_error[first + c],

@@ -3,7 +3,7 @@
 use super::{Claim, Flights};
 use crate::model::Shown;
 use crate::model::episode::Snapshot;
-use crate::report::words::number;
+use crate::words::number;
 use std::f64::consts::TAU;
 
 /// Where the paper has its errors settled, s.

@@ -5,6 +5,7 @@ use crate::campaign::Campaign;
 use crate::model::Shown;
 use crate::model::episode::Snapshot;
 use crate::reference::Reference;
+use crate::report::document::Key;
 use crate::report::panel::{Axis, Ink, Mark, Panel, Stroke};
 use crate::report::poster::poster;
 use std::path::Path;
@@ -149,11 +150,6 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
         .iter()
         .enumerate()
         .map(|(channel, name)| {
-            let groups = campaign.channel_groups();
-            let group = groups
-                .iter()
-                .find(|group| group.channels.contains(&channel));
-            let unit = group.map_or("", |group| group.role.unit());
             let marks = view.lines.iter().map(|line| {
                 let points = flights.series(flight, channel, line.pick);
                 Mark::Line(points, line.ink, line.stroke)
@@ -164,16 +160,16 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
                     range: Some((0.0, end_s)),
                     ..Axis::new("time, s")
                 },
-                y: Axis::new((view.unit)(unit)),
+                y: Axis::new((view.unit)(campaign.unit(channel))),
                 marks: marks.collect(),
                 ..Panel::default()
             }
         })
         .collect();
-    let legend: Vec<(Ink, String)> = view
+    let legend: Vec<Key> = view
         .lines
         .iter()
-        .map(|line| (line.ink, line.name.to_string()))
+        .map(|line| Key::of(line.stroke, line.ink, line.name))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
     let controller = if view.pid { "PID" } else { "FTC" };
@@ -213,8 +209,8 @@ fn paths() -> Option<Figure> {
         view("from above", ["x, m", "y, m"], [0, 1]),
         view("from the side", ["x, m", "z, m"], [0, 2]),
     ];
-    let legend: Vec<(Ink, String)> = (0..campaign.team)
-        .map(|agent| (Ink::Series(agent), format!("UAV {agent}")))
+    let legend: Vec<Key> = (0..campaign.team)
+        .map(|agent| Key::line(Ink::Series(agent), format!("UAV {agent}")))
         .collect();
     let title = "Figure 8: planned flight".to_string();
     let caption =
@@ -253,9 +249,9 @@ fn walk(robots: &Flights) -> Option<Figure> {
         ..Panel::default()
     };
     let legend = [
-        (Ink::Series(0), "centre of mass".to_string()),
-        (Ink::Series(1), "zero moment point".to_string()),
-        (Ink::Truth, "footholds (ankles)".to_string()),
+        Key::line(Ink::Series(0), "centre of mass"),
+        Key::line(Ink::Series(1), "zero moment point"),
+        Key::line(Ink::Truth, "footholds (ankles)"),
     ];
     let title = "Figure 10: planned walk".to_string();
     let caption =

@@ -3,9 +3,9 @@
 use super::document::{Block, Cell, Figure, Grid, Section};
 use super::evidence::Evidence;
 use super::panel::{Axis, Ink, Mark, Panel, Stroke};
-use super::words;
 use crate::campaign::ALL;
 use crate::synthesis::ChannelRole;
+use crate::words;
 
 /// Points of a drawn distribution: more cannot be told apart.
 const MOST_POINTS: usize = 300;
@@ -43,16 +43,15 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
         let pair = format!("{} against {}", sheet.text(row, "a"), sheet.text(row, "b"));
         let of = |name: &str| sheet.real(row, name);
         if pair != last {
-            let points = |name: &str| 100.0 * of(name);
             failures.rows.push(vec![
                 Cell::text(&*pair),
                 Cell::number(format!("{:.0}", of("only_a_failed"))),
                 Cell::number(format!("{:.0}", of("only_b_failed"))),
                 Cell::number(format!("{:.0}", of("both_failed"))),
-                Cell::number(words::measured(
-                    points("failure_rate_difference"),
-                    points("failure_rate_difference_lower"),
-                    points("failure_rate_difference_upper"),
+                Cell::number(words::points(
+                    of("failure_rate_difference"),
+                    of("failure_rate_difference_lower"),
+                    of("failure_rate_difference_upper"),
                 )),
                 Cell::number(words::p_value(of("mcnemar_mid_p"))),
                 Cell::number(words::p_value(of("mcnemar_mid_p_holm"))),
@@ -129,14 +128,18 @@ pub(crate) fn distributions(evidence: &Evidence) -> Section {
              diverges or lies beyond the frame is missing: its curve ends below 1."
         ),
     };
-    let blocks = vec![
-        Block::Figure(figure(groups.collect(), "by channel group")),
-        Block::Grid(quantiles(evidence)),
-        Block::Folded(
-            "Every channel".into(),
-            vec![Block::Figure(figure(channels.collect(), "by channel"))],
-        ),
-    ];
+    let table = Block::Grid(quantiles(evidence));
+    let blocks = match evidence.manifest.episodes {
+        0 | 1 => vec![table],
+        _ => vec![
+            Block::Figure(figure(groups.collect(), "by channel group")),
+            table,
+            Block::Folded(
+                "Every channel".into(),
+                vec![Block::Figure(figure(channels.collect(), "by channel"))],
+            ),
+        ],
+    };
     Section::new("Distribution of the errors", blocks)
 }
 

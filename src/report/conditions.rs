@@ -3,8 +3,8 @@
 use super::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use super::evidence::{Evidence, whole};
 use super::panel::{Axis, Ink, Mark, Panel, Stroke};
-use super::words;
 use crate::conditions::{fault_of, title};
+use crate::words;
 use std::collections::BTreeMap;
 
 /// Conditions of each target that are listed.
@@ -18,9 +18,14 @@ const BINS: usize = 10;
 pub(crate) fn ranking(evidence: &Evidence) -> Section {
     let sheet = &evidence.ranking;
     if sheet.rows() == 0 {
-        let text = "Nothing is ranked: no condition varies by chance alone.";
+        let text = match evidence.manifest.episodes {
+            1 => "One episode ranks nothing.",
+            _ => "Nothing is ranked: no condition varies by chance alone.",
+        };
         return Section::new("Which conditions matter", vec![Block::text(text)]);
     }
+    // Of a design whose episodes are not independent the strongest are shown as they are.
+    let tested = (0..sheet.rows()).any(|row| sheet.real(row, "p_holm").is_finite());
     let mut grid = Grid::new([
         "what",
         "condition",
@@ -45,7 +50,7 @@ pub(crate) fn ranking(evidence: &Evidence) -> Section {
         };
         let p = sheet.real(row, "p_holm");
         // Tables are sorted by strength; of those that chance explains as well, nothing is told.
-        if p.is_nan() || p > 0.05 {
+        if tested && (p.is_nan() || p > 0.05) {
             continue;
         }
         let before = listed.entry(what.clone()).or_default();
@@ -81,14 +86,24 @@ pub(crate) fn ranking(evidence: &Evidence) -> Section {
     }
     let mut blocks = Vec::new();
     if grid.rows.is_empty() {
-        blocks.push(Block::text(
-            "No condition has an effect that chance does not explain as well, after Holm's correction at 5 %. ranking.csv has \
-             all.",
-        ));
-    } else {
+        let strata = match evidence.campaign.strata.all() {
+            [] => "",
+            _ => " What the faults of the strata do is told above, stratum by stratum.",
+        };
         blocks.push(Block::Text(format!(
-            "Of each, the strongest {MOST} whose effect is sure at 5 % after Holm's correction; ranking.csv has all. A quantity \
-             that is drawn for each agent and channel counts by its root mean square over the team."
+            "Of no drawn quantity it is sure, at 5 % after Holm's correction, that it moves failures or errors; ranking.csv has \
+             all.{strata}"
+        )));
+    } else {
+        let which = match tested {
+            true => "whose effect is sure at 5 % after Holm's correction",
+            false => {
+                "of those that vary, untested, since the episodes of this design are not independent of each other"
+            }
+        };
+        blocks.push(Block::Text(format!(
+            "Of each, the strongest {MOST} {which}; ranking.csv has all. A quantity that is drawn for each agent and channel \
+             counts by its root mean square over the team."
         )));
         blocks.push(Block::Grid(grid));
     }
@@ -119,10 +134,21 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
     if order.len() < 5 * BINS {
         return None;
     }
+    // Of a count, whose values are few, all episodes with the same belong together.
+    let by_value = || order.chunk_by(|&a, &b| met[a] == met[b]);
+    let few = by_value().count() <= BINS;
+    let bins: Vec<&[usize]> = match few {
+        true => by_value().collect(),
+        false => order.chunks(order.len().div_ceil(BINS)).collect(),
+    };
+    let groups = match few {
+        true => "at each value".to_string(),
+        false => format!("in {BINS} groups of equally many episodes"),
+    };
     let mut marks = Vec::new();
     for (index, errors) in errors.iter().enumerate() {
         let (mut band, mut line) = (Vec::new(), Vec::new());
-        for bin in order.chunks(order.len().div_ceil(BINS)) {
+        for bin in &bins {
             let middle = met[bin[bin.len() / 2]];
             let mut of_bin: Vec<f64> = bin.iter().filter_map(|&k| errors.get(k).copied()).collect();
             of_bin.sort_by(f64::total_cmp);
@@ -158,8 +184,8 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
         }],
         legend: evidence.legend(),
         caption: format!(
-            "RMS error over {name}: median and the band from the 5th to the 95th percentile, in {BINS} groups of equally many \
-             episodes. A band is left out where its end diverges."
+            "RMS error over {name}: median and the band from the 5th to the 95th percentile, {groups}. A band is left out where \
+             its end diverges."
         ),
     })
 }
@@ -295,6 +321,7 @@ pub(crate) fn worst(evidence: &Evidence) -> Section {
         "rank",
         "episode",
         "ended",
+        "failed at, s",
         "largest error over its limit",
         "where",
         "replay",
@@ -311,6 +338,7 @@ pub(crate) fn worst(evidence: &Evidence) -> Section {
             Cell::number(format!("{rank:.0}")),
             Cell::number(format!("{episode:.0}")),
             Cell::text(sheet.text(row, "status")),
+            Cell::number(words::number(sheet.real(row, "failed_at_s"))),
             Cell::number(words::number(excess)),
             Cell::text(format!(
                 "{} of agent {:.0}",

@@ -1,7 +1,7 @@
 //! What a report says, apart from how it looks: the same blocks become HTML and Markdown.
 
-use super::panel::{Ink, Panel};
-use super::words;
+use super::panel::{Ink, Panel, Stroke};
+use crate::words;
 
 /// A report.
 #[derive(Debug, Clone)]
@@ -139,6 +139,53 @@ impl Spread {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Figure {
     pub(crate) panels: Vec<Panel>,
-    pub(crate) legend: Vec<(Ink, String)>,
+    pub(crate) legend: Vec<Key>,
     pub(crate) caption: String,
+}
+
+/// What a colour of a figure stands for.
+#[derive(Debug, Clone)]
+pub(crate) struct Key {
+    pub(crate) swatch: Swatch,
+    pub(crate) ink: Ink,
+    pub(crate) text: String,
+}
+
+/// How a key is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Swatch {
+    Line,
+    Dashes,
+    /// A shaded span.
+    Shade,
+}
+
+impl Key {
+    pub(crate) fn line(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Line, ink, text)
+    }
+
+    pub(crate) fn dashes(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Dashes, ink, text)
+    }
+
+    pub(crate) fn shade(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Shade, ink, text)
+    }
+
+    /// The key of a line.
+    pub(crate) fn of(stroke: Stroke, ink: Ink, text: impl Into<String>) -> Self {
+        match stroke {
+            Stroke::Dashed => Self::dashes(ink, text),
+            Stroke::Solid | Stroke::Steps => Self::line(ink, text),
+        }
+    }
+
+    fn new(swatch: Swatch, ink: Ink, text: impl Into<String>) -> Self {
+        Self {
+            swatch,
+            ink,
+            text: text.into(),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! All that the directory of a run holds: what a report is made of.
 
+use super::document::Key;
 use super::panel::Ink;
 use super::sheet::Sheet;
 use crate::campaign::{Campaign, CampaignError};
@@ -74,10 +75,10 @@ impl Evidence {
     }
 
     /// The controllers with their colours.
-    pub(crate) fn legend(&self) -> Vec<(Ink, String)> {
+    pub(crate) fn legend(&self) -> Vec<Key> {
         let names = self.campaign.controllers.iter().enumerate();
         names
-            .map(|(index, name)| (Ink::Series(index), name.to_string()))
+            .map(|(index, name)| Key::line(Ink::Series(index), name))
             .collect()
     }
 

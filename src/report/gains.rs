@@ -2,8 +2,8 @@
 
 use super::document::{Block, Cell, Grid, Section};
 use super::evidence::Evidence;
-use super::words;
 use crate::gains::ChannelController;
+use crate::words;
 
 /// Gains, poles, margins, certificate, and the attenuation that flights showed.
 pub(crate) fn section(evidence: &Evidence) -> Section {
@@ -34,12 +34,15 @@ pub(crate) fn section(evidence: &Evidence) -> Section {
             folded.push(Block::Code(numbers(own)));
         }
     }
-    let blocks = vec![
+    let mut blocks = vec![
         Block::Grid(margins),
         Block::Folded("Gains, poles and checks".into(), folded),
         Block::text(attenuation_explained(evidence)),
-        Block::Grid(attenuation(evidence)),
     ];
+    let attenuation = attenuation(evidence);
+    if !attenuation.rows.is_empty() {
+        blocks.push(Block::Grid(attenuation));
+    }
     Section::new("Gains and certificate", blocks)
 }
 

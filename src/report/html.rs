@@ -1,6 +1,6 @@
 //! A document as a page that needs nothing else: styles and drawings inside, no scripts.
 
-use super::document::{Block, Cell, Document, Figure, Grid, Scale, Section, Spread};
+use super::document::{Block, Cell, Document, Figure, Grid, Scale, Section, Spread, Swatch};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = concat!(include_str!("colours.css"), include_str!("style.css"));
@@ -76,14 +76,22 @@ fn of_figure(figure: &Figure) -> Markup {
         figure {
             @if !figure.legend.is_empty() {
                 div.legend {
-                    @for (ink, name) in &figure.legend {
-                        span { i style={ "background:" (ink.css()) } {} (name) }
+                    @for key in &figure.legend {
+                        span { i class=(of_swatch(key.swatch)) style={ "color:" (key.ink.css()) } {} (key.text) }
                     }
                 }
             }
             div.panels { @for panel in &figure.panels { (PreEscaped(panel.svg())) } }
             figcaption { (figure.caption) }
         }
+    }
+}
+
+fn of_swatch(swatch: Swatch) -> &'static str {
+    match swatch {
+        Swatch::Line => "line",
+        Swatch::Dashes => "dashes",
+        Swatch::Shade => "shade",
     }
 }
 

@@ -3,12 +3,16 @@
 use super::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use super::evidence::{Evidence, whole};
 use super::panel::{Axis, Ink, Mark, Panel, Stroke};
-use super::words;
 use crate::campaign::ALL;
+use crate::caveats::caveats;
+use crate::words::{self, sentence};
 
 /// Failure rates with intervals, requirements, and the share of episodes still good over time.
 pub(crate) fn section(evidence: &Evidence) -> Section {
-    let mut blocks = vec![Block::Text(meaning(evidence)), Block::Grid(rates(evidence))];
+    let mut blocks = vec![Block::Text(meaning(evidence))];
+    let caveats = caveats(&evidence.campaign, &evidence.manifest);
+    blocks.extend(caveats.iter().map(|caveat| Block::Text(sentence(caveat))));
+    blocks.push(Block::Grid(rates(evidence)));
     if !evidence.manifest.requirements.is_empty() {
         blocks.push(Block::Grid(requirements(evidence)));
     }

@@ -166,8 +166,9 @@ impl Panel {
         self.scalable(&drawn)
     }
 
+    /// Whole pixels, as the drawing writes them.
     fn size(&self) -> (f64, f64) {
-        (SIZE.0, self.height.unwrap_or(SIZE.1))
+        (SIZE.0, self.height.unwrap_or(SIZE.1).round())
     }
 
     /// The drawing without a size of its own, and with a name for those who cannot see it.
@@ -472,12 +473,14 @@ mod tests {
         let blank = of(vec![(f64::NAN, 1.0), (2.0, f64::INFINITY)]).svg();
         assert!(blank.contains("no finite values to show") && blank.contains("a &lt; b"));
         let drawn = of(vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 2.0)]).svg();
-        for svg in [blank, drawn] {
+        let high = Panel {
+            height: Some(309.098),
+            ..of(vec![(0.0, 1.0), (2.0, 3.0)])
+        };
+        for (svg, height) in [(blank, 250), (drawn, 250), (high.svg(), 309)] {
             assert!(svg.starts_with("<svg") && svg.ends_with("</svg>"), "{svg}");
-            assert!(
-                svg.contains("viewBox=\"0 0 380 250\" class=\"panel\""),
-                "{svg}"
-            );
+            let free = format!("viewBox=\"0 0 380 {height}\" class=\"panel\"");
+            assert!(svg.contains(&free), "{svg}");
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         }
     }

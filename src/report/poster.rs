@@ -1,6 +1,7 @@
 //! Panels in one drawing that stands alone: a figure for a paper, or for a README.
 
-use super::panel::{Ink, Panel, SIZE, escaped};
+use super::document::{Key, Swatch};
+use super::panel::{Panel, SIZE, escaped};
 
 /// Height of title and explanation, px.
 const TITLE: f64 = 50.0;
@@ -17,7 +18,7 @@ pub(crate) fn poster(
     subtitle: &str,
     panels: &[Panel],
     columns: usize,
-    legend: &[(Ink, String)],
+    legend: &[Key],
 ) -> String {
     let columns = columns.clamp(1, panels.len().max(1));
     let rows = panels.len().div_ceil(columns);
@@ -48,22 +49,28 @@ pub(crate) fn poster(
 }
 
 /// The legend in as many lines as it takes, and where it ends, px.
-fn legend_of(legend: &[(Ink, String)], width: f64) -> (String, f64) {
+fn legend_of(legend: &[Key], width: f64) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut y) = (20.0, TITLE + 0.5 * LINE);
-    for (ink, name) in legend {
-        let own = 45.0 + LETTER * name.chars().count() as f64;
+    for Key { swatch, ink, text } in legend {
+        let own = 45.0 + LETTER * text.chars().count() as f64;
         if x > 20.0 && x + own > width {
             (x, y) = (20.0, y + LINE);
         }
+        let drawn = match swatch {
+            Swatch::Line => "stroke-width=\"4\"",
+            Swatch::Dashes => "stroke-width=\"3\" stroke-dasharray=\"6 3\"",
+            Swatch::Shade => "stroke-width=\"12\" opacity=\"0.3\"",
+        };
         svg.push_str(&format!(
-            "<rect x=\"{x}\" y=\"{}\" width=\"18\" height=\"4\" rx=\"2\" fill=\"{}\"/>\
+            "<line x1=\"{x}\" x2=\"{}\" y1=\"{middle}\" y2=\"{middle}\" stroke=\"{}\" {drawn}/>\
              <text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"var(--text)\">{}</text>",
-            y - 6.0,
+            x + 18.0,
             ink.css(),
             x + 25.0,
             y,
-            escaped(name)
+            escaped(text),
+            middle = y - 4.0,
         ));
         x += own;
     }

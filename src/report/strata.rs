@@ -4,7 +4,7 @@ use super::document::{Block, Cell, Grid, Section};
 use super::evidence::Evidence;
 use super::outcome::rate;
 use super::panel::Ink;
-use super::words;
+use crate::words;
 
 /// The forest of failure rates and the growth of the errors; none of a campaign without strata.
 pub(crate) fn section(evidence: &Evidence) -> Option<Section> {

@@ -10,10 +10,10 @@ mod walk;
 
 use super::document::{Block, Cell, Document, Grid, Section};
 use super::html::html;
-use super::words::number;
 use crate::campaign::Agent;
 use crate::replay::Replay;
 use crate::tables::{Status, status};
+use crate::words::number;
 use curves::{Quantity, figure};
 use scene::{Flight, Scene};
 
@@ -119,16 +119,21 @@ fn errors(scene: &Scene<'_>) -> Section {
             ]
         })
         .collect();
+    let bounded = match scene.is_bounded() {
+        true => format!(
+            ", and for {} the attenuation that inequality (24) of the paper bounds, beside its certified level",
+            scene.asked().name
+        ),
+        false => String::new(),
+    };
     let mut blocks = vec![
         Block::text(format!(
-            "Agent {worst}{}: RMS error / largest error from {} s on, and for {} the attenuation that inequality (24) of the \
-             paper bounds, beside its certified level.",
+            "Agent {worst}{}: RMS error / largest error from {} s on{bounded}.",
             match scene.campaign.team {
                 1 => "",
                 _ => ", which fared worst",
             },
             f64::from(scene.campaign.time.settle_step) * scene.campaign.time.step_s,
-            scene.asked().name
         )),
         Block::Grid(errors_of(scene, worst)),
     ];
@@ -145,8 +150,12 @@ fn errors(scene: &Scene<'_>) -> Section {
         }
     }
     if !reasons.is_empty() {
+        let place = match scene.is_bounded() {
+            true => " where there is a dash",
+            false => "",
+        };
         blocks.push(Block::text(format!(
-            "(24) is not applicable where there is a dash: {}.",
+            "Inequality (24) is not applicable{place}: {}.",
             reasons.join("; ")
         )));
     }
@@ -157,20 +166,21 @@ fn errors_of(scene: &Scene<'_>, agent: usize) -> Grid {
     let mut grid = Grid::new(["channel"]);
     let names = scene.flights.iter().map(|flight| flight.name.to_string());
     grid.head.extend(names);
-    grid.head
-        .extend(["attenuation", "certified", "(24)"].map(String::from));
+    if scene.is_bounded() {
+        let heads = ["attenuation", "certified", "(24)"];
+        grid.head.extend(heads.map(String::from));
+    }
     for (channel, name) in scene.campaign.channels().iter().enumerate() {
-        let unit = scene.unit(channel);
+        let unit = scene.campaign.unit(channel);
         let mut row = vec![Cell::text(format!("{name},\u{a0}{unit}"))];
         row.extend(scene.flights.iter().map(|flight| {
             let metrics = &flight.outcomes[agent].channels[channel];
-            Cell::number(format!(
-                "{} / {}",
-                number(metrics.rmse),
-                number(metrics.max_abs)
-            ))
+            Cell::number(match metrics.max_abs.is_nan() {
+                true => "-".to_string(),
+                false => format!("{} / {}", number(metrics.rmse), number(metrics.max_abs)),
+            })
         }));
-        row.extend(match &scene.replay.attenuations[agent][channel] {
+        let attenuation = match &scene.replay.attenuations[agent][channel] {
             Ok(found) => [
                 Cell::number(number(found.level())),
                 Cell::number(number(found.certified)),
@@ -180,7 +190,8 @@ fn errors_of(scene: &Scene<'_>, agent: usize) -> Grid {
                 ),
             ],
             Err(_) => ["-"; 3].map(Cell::number),
-        });
+        };
+        row.extend(attenuation.into_iter().filter(|_| scene.is_bounded()));
         grid.rows.push(row);
     }
     grid

@@ -3,11 +3,12 @@
 use super::line;
 use super::style::{bad, judged};
 use urts_mc::attenuation::{Attenuations, GroupAttenuation};
+use urts_mc::words::number;
 
-/// What stands in the lines of the channels of a replay behind their errors, where (24) applies to some.
+/// The heads of what stands behind the errors of a replay, where (24) applies to some channels.
 pub(crate) fn heading(found: &Attenuations) -> &'static str {
     if found.iter().flatten().any(Result::is_ok) {
-        "; attenuation, the certified level, and whether (24) holds with V(0)"
+        "  attenuation  certified  (24) with V(0)"
     } else {
         ""
     }
@@ -20,9 +21,9 @@ pub(crate) fn of_channel(found: &Attenuations, agent: usize, channel: usize) -> 
     }
     match &found[agent][channel] {
         Ok(attenuation) => format!(
-            "  {:>9.4}  {:>9.4}  {}",
-            attenuation.level(),
-            attenuation.certified,
+            "  {:>11}  {:>9}  {}",
+            number(attenuation.level()),
+            number(attenuation.certified),
             judged(attenuation.holds(), "holds", "FAILS")
         ),
         Err(_) => "  not applicable".to_string(),

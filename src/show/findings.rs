@@ -1,12 +1,12 @@
 //! What a run found, for people.
 
-use super::caveats::caveats;
 use super::conclusion::{in_short, requirements};
 use super::screening::strata;
 use super::style::heading;
 use super::{attenuation, line};
 use std::path::Path;
 use urts_mc::campaign::{ALL, Campaign};
+use urts_mc::caveats::caveats;
 use urts_mc::comparison::{FailureRate, Measured, PairedComparison, Ratio};
 use urts_mc::conditions::title;
 use urts_mc::cross_check::CrossCheck;
@@ -15,6 +15,7 @@ use urts_mc::ranking::RankedCondition;
 use urts_mc::run::Findings;
 use urts_mc::statistics::Interval;
 use urts_mc::synthesis::ChannelRole;
+use urts_mc::words::digits;
 
 /// Channels that are shown one by one.
 const MOST_CHANNELS: usize = 6;
@@ -98,7 +99,9 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> 
             ),
         );
     }
-    text.push_str(&caveats(campaign, findings));
+    for caveat in caveats(campaign, manifest) {
+        line(&mut text, &caveat);
+    }
     text.push_str(&strata(campaign, findings));
     line(
         &mut text,
@@ -127,13 +130,10 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> 
                     && row.group == group
             });
             row.map_or(String::new(), |row| {
-                let value = |k: usize| {
-                    row.quantiles[k]
-                        .1
-                        .map_or("-".to_string(), |value| format!("{value:.4}"))
-                };
+                let number = |value: f64| digits(value, 3);
+                let value = |k: usize| row.quantiles[k].1.map_or("-".to_string(), number);
                 let interval = row.quantiles[0].2.map_or(String::new(), |i| {
-                    format!(" [{:.4}, {:.4}]", i.lower, i.upper)
+                    format!(" [{}, {}]", number(i.lower), number(i.upper))
                 });
                 format!("{}{interval}, {}", value(0), value(1))
             })

@@ -59,7 +59,8 @@ pub(crate) fn findings_json(findings: &Findings) -> Value {
         })).collect::<Vec<_>>(),
         "worst_episodes": findings.worst.iter().map(|worst| json!({
             "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
-            "largest_error_over_limit": finite(worst.excess), "agent": worst.agent, "channel": *worst.channel,
+            "largest_error_over_limit": finite(worst.excess), "failed_at_s": worst.failed_at_s,
+            "agent": worst.agent, "channel": *worst.channel,
         })).collect::<Vec<_>>(),
         "requirements": findings.manifest.requirements.iter().map(|result| json!({
             "controller": result.controller, "stratum": result.stratum, "limit": result.limit, "upper_95": result.upper_95,

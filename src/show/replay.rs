@@ -12,6 +12,7 @@ use urts_mc::model::episode::AgentOutcome;
 use urts_mc::model::metric::ChannelOutcome;
 use urts_mc::replay::Replay;
 use urts_mc::tables::{Status, status};
+use urts_mc::words::number;
 
 /// How a replayed episode went.
 pub(crate) fn replay(
@@ -19,18 +20,31 @@ pub(crate) fn replay(
     (_, episode, controller): (&Path, u32, &str),
     files: &ReplayFiles,
 ) -> String {
+    let campaign = &replay.campaign;
     let mut text = String::new();
-    let channels = replay.campaign.channels();
-    let width = channels.iter().map(|name| name.len()).max().unwrap_or(0);
+    let names: Vec<String> = campaign
+        .channels()
+        .iter()
+        .enumerate()
+        .map(|(channel, name)| format!("{name}, {}", campaign.unit(channel)))
+        .collect();
+    // At least as wide as its heading.
+    let width = names.iter().map(String::len).max().unwrap_or(0).max(10);
+    let settle_s = f64::from(campaign.time.settle_step) * campaign.time.step_s;
+    let title = heading(&format!("episode {episode} under {controller}"));
+    line(&mut text, &format!("{title}: errors from {settle_s} s on"));
     line(
         &mut text,
-        &heading(&format!(
-            "episode {episode} under {controller}: RMS error and largest error from settle_s on{}",
+        &format!(
+            "    {:<width$} {:>10}  {:>10}{}",
+            "channel",
+            "RMS",
+            "largest",
             attenuation::heading(&replay.attenuations)
-        )),
+        ),
     );
     for (agent, outcome) in replay.outcomes.iter().enumerate() {
-        let ending = match status(&replay.campaign, outcome) {
+        let ending = match status(campaign, outcome) {
             Status::Ok => String::new(),
             failed => {
                 let limit = match (failed, outcome.failed_step) {
@@ -44,13 +58,13 @@ pub(crate) fn replay(
             }
         };
         line(&mut text, &format!("  agent {agent}{ending}"));
-        for (channel, (name, metrics)) in channels.iter().zip(&outcome.channels).enumerate() {
+        for (channel, (name, metrics)) in names.iter().zip(&outcome.channels).enumerate() {
             line(
                 &mut text,
                 &format!(
-                    "    {name:<width$} {:>10.5}  {:>10.5}{}",
-                    metrics.rmse,
-                    metrics.max_abs,
+                    "    {name:<width$} {:>10}  {:>10}{}",
+                    number(metrics.rmse),
+                    number(metrics.max_abs),
                     attenuation::of_channel(&replay.attenuations, agent, channel)
                 ),
             );

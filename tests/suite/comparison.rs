@@ -6,6 +6,7 @@ use urts_mc::comparison::{
     compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
 };
 use urts_mc::model::rng::{Address, Stream};
+use urts_mc::ranking::worst;
 use urts_mc::tables::{Scores, Status};
 
 /// One UAV under two controllers; episodes take turns: an actuator fault, a sensor fault, none.
@@ -43,7 +44,10 @@ fn scores(campaign: &Campaign, outcome: impl Fn(usize, usize) -> (Status, f64)) 
             .map(|controller| (0..episodes).map(|k| outcome(controller, k).0).collect())
             .collect(),
         rmse: controllers.clone().map(errors).collect(),
-        max_abs: controllers.map(errors).collect(),
+        max_abs: controllers.clone().map(errors).collect(),
+        failed_step: controllers
+            .map(|_| vec![None; episodes * campaign.team])
+            .collect(),
         fault_occurs: vec![vec![false; episodes]; campaign.faults.len()],
         conditions: Vec::new(),
     }
@@ -322,10 +326,17 @@ fn the_verdict_says_who_is_better_and_only_where_an_interval_leaves_no_doubt() {
                 "30 episodes do not tell ftc and pid apart: ",
                 "the other in 6.7 % (-3.3 points [",
                 "), no clear difference; ",
-                "not clearly different in position and not clearly different in attitude",
+                "in the median its RMS error is not clearly different",
             ],
         ),
         ([0, 0], 2.0, &["ftc does better than pid: neither fails; "]),
+        (
+            [30, 30],
+            1.0,
+            &[
+                "apart: both fail in every episode; in the median its RMS error is not clearly different",
+            ],
+        ),
     ] {
         let said = said(failures, ratio);
         for word in words {
@@ -365,6 +376,37 @@ fn a_single_controller_has_a_verdict_of_its_own() {
         said,
         ["ftc fails in 0 of 30 episodes: its failure rate is below 9.50 %"]
     );
+}
+
+#[test]
+fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_first() {
+    let campaign = campaign(30);
+    let (team, channels) = (campaign.team, campaign.channels().len());
+    let mut scores = scores(&campaign, |_, episode| {
+        let status = match episode {
+            4 | 9 | 20 => Status::Diverged,
+            2 => Status::Exceeded,
+            _ => Status::Ok,
+        };
+        (status, 0.01 * (episode + 1) as f64)
+    });
+    // The first agent is pulled along; in episode 20 the last agent goes first, and earlier than anyone in the others.
+    for (episode, step) in [(4, 700), (9, 900), (20, 300)] {
+        for agent in 0..team {
+            scores.failed_step[0][episode * team + agent] = Some(step + 5 * (team - agent) as u32);
+            let first = (episode * team + agent) * channels;
+            scores.max_abs[0][first + 1..first + channels].fill(f64::NAN);
+        }
+    }
+    let found = worst(&campaign, &scores);
+    let of_first: Vec<_> = found.iter().filter(|own| own.controller == "ftc").collect();
+    let episodes: Vec<u32> = of_first.iter().map(|own| own.episode).collect();
+    // Diverged by time, then what exceeded its limits, then by the size of the error.
+    assert_eq!(episodes, [20, 4, 9, 2, 29, 28, 27, 26, 25, 24]);
+    let first = of_first[0];
+    assert_eq!((first.agent, &*first.channel), (team - 1, "y"));
+    assert_eq!(first.failed_at_s, Some(305.0 * campaign.time.step_s));
+    assert!(first.excess.is_infinite() && of_first[3].failed_at_s.is_none());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::common::{altered, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{compare, comparison_table, summarise, summary_table};
+use urts_mc::comparison::{compare, comparison_table, summarise, summary_table, verdict};
 use urts_mc::draw::{Episode, draw};
 use urts_mc::flight::Settings;
 use urts_mc::output::OutputDir;
@@ -182,6 +182,7 @@ fn scores(campaign: &Campaign) -> Scores {
         status: vec![vec![Status::Ok; 64]; controllers],
         rmse: vec![vec![0.01; 64 * values]; controllers],
         max_abs: vec![vec![0.01; 64 * values]; controllers],
+        failed_step: vec![vec![None; 64 * campaign.team]; controllers],
         fault_occurs: vec![vec![true; 64]; campaign.faults.len()],
         conditions: vec![(
             "mass_scale".into(),
@@ -232,6 +233,11 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
                 .filter(|rate| &*rate.stratum == "all")
         };
         assert!(of_all().all(|rate| rate.replicates.is_some() == (rate.controller == "ftc")));
+
+        // What no interval tells is not called unclear.
+        let said = verdict(&summary, &comparisons).join("");
+        assert!(said.contains(" points, no interval)"), "{said}");
+        assert!(!said.contains("no clear difference"), "{said}");
 
         let summary = summary_table(&campaign, &summary);
         let comparison = comparison_table(&campaign, &comparisons);

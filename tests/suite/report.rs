@@ -79,6 +79,12 @@ fn rows(text: &str) -> Vec<std::collections::HashMap<String, String>> {
         .collect()
 }
 
+/// A number of everyday size with four digits that count.
+fn four_digits(value: f64) -> String {
+    let decimals = (3.0 - value.log10().floor()) as usize;
+    format!("{value:.decimals$}")
+}
+
 #[test]
 fn a_report_says_what_the_tables_say() {
     let run = Run::of("smoke", 12, &[]);
@@ -98,18 +104,15 @@ fn a_report_says_what_the_tables_say() {
         let rate: f64 = row["failure_rate"].parse().unwrap();
         assert!(line.contains(&format!("{:.1}", 100.0 * rate)), "{line}");
         let median: f64 = row["q50"].parse().unwrap();
-        assert!(html.contains(&format!("{median:.4} [")), "{median}");
+        assert!(
+            html.contains(&format!("{} [", four_digits(median))),
+            "{median}"
+        );
     }
     for row in rows(&run.read("comparison.csv")) {
         if row["scope"] == "group" && row["stratum"] == "all" {
             let ratio: f64 = row["ratio"].parse().unwrap();
-            // Four digits that count.
-            let shown = match ratio {
-                100.0.. => format!("{ratio:.1} ["),
-                10.0..100.0 => format!("{ratio:.2} ["),
-                1.0..10.0 => format!("{ratio:.3} ["),
-                _ => format!("{ratio:.4} ["),
-            };
+            let shown = format!("{} [", four_digits(ratio));
             assert!(html.contains(&shown), "{shown}");
         }
     }

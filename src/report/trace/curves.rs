@@ -1,11 +1,12 @@
 //! What a channel showed over time: errors, states, faults, commands (the paper's Figures 11 to 20).
 
-use super::super::document::Figure;
+use super::super::document::{Figure, Key};
 use super::super::panel::{Axis, Ink, Mark, Panel, Stroke};
 use super::frame::Frame;
 use super::scene::{Flight, Scene};
 use crate::campaign::{ActuationKind, Agent, FIRST_ATTITUDE};
 use crate::model::Shown;
+use crate::words::sentence;
 
 /// Room around the values that are no peaks, in units of their range.
 const ROOM: f64 = 0.6;
@@ -148,7 +149,7 @@ pub(super) fn panel(
         draw(first, estimate, scene.estimate_ink(), Stroke::Dashed);
     }
     let robot = matches!(scene.campaign.agent, Agent::Biped(_));
-    let unit = quantity.unit(scene.unit(channel), robot);
+    let unit = quantity.unit(scene.campaign.unit(channel), robot);
     let failed = shown.iter().filter_map(|flight| {
         let t_s = scene.failed_at_s(flight, agent)?;
         Some((t_s, flight.ink()))
@@ -226,9 +227,9 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
     let asked = scene.asked();
     let mut legend = Vec::new();
     match quantity {
-        Quantity::State => legend.push((Ink::Truth, "reference r".to_string())),
+        Quantity::State => legend.push(Key::dashes(Ink::Truth, "reference r")),
         Quantity::ActuatorFault | Quantity::SensorFault => {
-            legend.push((
+            legend.push(Key::line(
                 Ink::Truth,
                 format!("{} under {}", quantity.symbol(), asked.name),
             ));
@@ -242,22 +243,27 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
         });
         match quantity.is_fault() {
             true if estimates => {
-                legend.push((flight.ink(), format!("estimate of {}", flight.name)));
+                legend.push(Key::line(
+                    flight.ink(),
+                    format!("estimate of {}", flight.name),
+                ));
             }
             true => {}
-            false => legend.push((flight.ink(), flight.name.to_string())),
+            false => legend.push(Key::line(flight.ink(), flight.name)),
         }
     }
     if quantity.estimate().is_some() {
-        legend.push((scene.estimate_ink(), format!("estimate of {}", asked.name)));
+        let text = format!("estimate of {}", asked.name);
+        legend.push(Key::dashes(scene.estimate_ink(), text));
     }
-    let struck = drawn.iter().any(|(panel, _)| !panel.spans.is_empty());
-
+    if drawn.iter().any(|(panel, _)| !panel.spans.is_empty()) {
+        legend.push(Key::shade(Ink::Fault, "a fault strikes the channel"));
+    }
     if drawn.iter().any(|(panel, _)| !panel.levels.is_empty()) {
-        legend.push((Ink::Limit, "limit".to_string()));
+        legend.push(Key::line(Ink::Limit, "limit"));
     }
     let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
-    let mut caption = format!("{}.", capital(quantity.name()));
+    let mut caption = sentence(quantity.name());
     let mut add = |sentence: &str| {
         caption.push(' ');
         caption.push_str(sentence);
@@ -278,9 +284,6 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
         }
         Quantity::Error | Quantity::State => {}
     }
-    if struck {
-        add("Shaded: a fault strikes the channel.");
-    }
     if failed {
         add("The line down marks the time at which the flight of its colour failed.");
     }
@@ -292,13 +295,4 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
         legend,
         caption,
     }
-}
-
-/// A sentence's first letter.
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters
-        .next()
-        .map(|letter| letter.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
 }

@@ -1,10 +1,10 @@
 //! What an episode met: faults, disturbances and the rest of its draw.
 
 use super::super::document::{Block, Cell, Grid, Section};
-use super::super::words::number;
 use super::scene::Scene;
 use crate::campaign::Link;
 use crate::draw::AgentDraw;
+use crate::words::number;
 use std::sync::Arc;
 
 /// Values that are listed; of more, the lowest and the highest.

@@ -1,6 +1,6 @@
 //! Where UAVs flew, from above and from the side (the paper's Figure 8).
 
-use super::super::document::{Block, Figure, Section};
+use super::super::document::{Block, Figure, Key, Section};
 use super::super::panel::{Axis, Ink, Mark, Panel, SIZE, Stroke};
 use super::frame::Frame;
 use super::scene::{Flight, Scene};
@@ -21,21 +21,21 @@ pub(super) fn section(scene: &Scene<'_>) -> Section {
     let mut cut = false;
     let frames = [0, 1, 2].map(|coordinate| frame(scene, coordinate));
     let mut panels = Vec::new();
-    for flight in &scene.flights {
-        for (view, channels, labels) in VIEWS {
-            let [Some(across), Some(up)] = channels.map(|channel| frames[channel]) else {
-                continue;
-            };
-            cut |= across.cut || up.cut;
+    for (view, channels, labels) in VIEWS {
+        let [Some(across), Some(up)] = channels.map(|channel| frames[channel]) else {
+            continue;
+        };
+        cut |= across.cut || up.cut;
+        for flight in &scene.flights {
             panels.push(panel(scene, flight, (view, channels, labels), [across, up]));
         }
     }
-    let mut legend = vec![(Ink::Truth, "reference".to_string())];
+    let mut legend = vec![Key::dashes(Ink::Truth, "reference")];
     legend.extend(
         scene
             .flights
             .iter()
-            .map(|flight| (flight.ink(), flight.name.to_string())),
+            .map(|flight| Key::line(flight.ink(), flight.name)),
     );
     let mut caption = format!(
         "Paths of all {}; a dot is where one begins.",

@@ -1,5 +1,6 @@
 //! The essential figures as one picture: a column for each controller, a row for each quantity.
 
+use super::super::document::Key;
 use super::super::panel::Ink;
 use super::super::poster::poster;
 use super::curves::{Quantity, panel};
@@ -27,10 +28,10 @@ pub(super) fn svg(scene: &Scene<'_>) -> String {
     }
     let mut legend = legend(scene);
     if panels.iter().any(|panel| !panel.spans.is_empty()) {
-        legend.push((Ink::Fault, "shaded: a fault strikes".to_string()));
+        legend.push(Key::shade(Ink::Fault, "a fault strikes"));
     }
     if panels.iter().any(|panel| !panel.levels.is_empty()) {
-        legend.push((Ink::Limit, "limit".to_string()));
+        legend.push(Key::line(Ink::Limit, "limit"));
     }
     let campaign = scene.campaign;
     let title = format!(
@@ -55,16 +56,16 @@ pub(super) fn svg(scene: &Scene<'_>) -> String {
 }
 
 /// Colours and what they mean.
-fn legend(scene: &Scene<'_>) -> Vec<(Ink, String)> {
+fn legend(scene: &Scene<'_>) -> Vec<Key> {
     let flights = scene.flights.iter();
-    let mut legend: Vec<(Ink, String)> = flights
-        .map(|flight| (flight.ink(), flight.name.to_string()))
+    let mut legend: Vec<Key> = flights
+        .map(|flight| Key::line(flight.ink(), flight.name))
         .collect();
     legend.extend([
-        (scene.estimate_ink(), "estimate of e".to_string()),
-        (
+        Key::dashes(scene.estimate_ink(), "estimate of e"),
+        Key::line(
             Ink::Truth,
-            "f1, f2; their estimates in the colour of the controller".to_string(),
+            "f1, f2; their estimates in the colour of the controller",
         ),
     ]);
     legend

@@ -78,11 +78,9 @@ impl<'a> Scene<'a> {
         Ink::Series(self.campaign.controllers.len().max(3))
     }
 
-    /// The unit of a channel, m or rad.
-    pub(super) fn unit(&self, channel: usize) -> &'static str {
-        let groups = self.campaign.channel_groups();
-        let own = groups.iter().find(|own| own.channels.contains(&channel));
-        own.map_or("", |own| own.role.unit())
+    /// Whether inequality (24) bounds the errors of a channel under the controller that was asked for.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.replay.attenuations.iter().flatten().any(Result::is_ok)
     }
 
     /// The time of a snapshot, s.

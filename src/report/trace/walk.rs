@@ -1,6 +1,6 @@
 //! How a robot was to walk, from above and from the side (the paper's Figure 10), and how it walked, as a stick figure.
 
-use super::super::document::{Block, Figure, Section};
+use super::super::document::{Block, Figure, Key, Section};
 use super::super::panel::{Axis, Ink, Mark, Panel, Stroke};
 use super::path::height;
 use super::scene::{Flight, Scene};
@@ -42,7 +42,7 @@ pub(super) fn section(scene: &Scene<'_>, robot: &Robot) -> Section {
     Section::new("Walk", blocks)
 }
 
-/// How far the pelvis has come along its path at the samples of a walk.
+/// How far the pelvis has come ahead at the samples of a walk; its swaying from side to side is no way.
 struct Way<'a> {
     walk: &'a Walk,
     /// (time s, way m).
@@ -52,11 +52,11 @@ struct Way<'a> {
 impl<'a> Way<'a> {
     fn of(walk: &'a Walk) -> Self {
         let mut samples: Vec<(f64, f64)> = Vec::new();
-        let mut last = walk.pelvis_at(0.0).position_m;
+        let mut last = walk.pelvis_at(0.0);
         let mut way_m = 0.0;
         for t_s in walk.times_s() {
-            let at = walk.pelvis_at(t_s).position_m;
-            way_m += (at[0] - last[0]).hypot(at[1] - last[1]);
+            let at = walk.pelvis_at(t_s);
+            way_m += last.local(at.position_m)[0];
             samples.push((t_s, way_m));
             last = at;
         }
@@ -158,11 +158,11 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
             ),
         ],
         legend: vec![
-            (COM, "centre of mass".into()),
-            (ZMP, "zero moment point".into()),
-            (Ink::Truth, "reference of the zero moment point".into()),
-            (LEGS[0], "left foot".into()),
-            (LEGS[1], "right foot".into()),
+            Key::line(COM, "centre of mass"),
+            Key::line(ZMP, "zero moment point"),
+            Key::dashes(Ink::Truth, "reference of the zero moment point"),
+            Key::line(LEGS[0], "left foot"),
+            Key::line(LEGS[1], "right foot"),
         ],
         caption: "The plan: footholds with the outlines of the soles, the centre of mass, the zero moment point of the pendulum \
                   and the one planned for."
@@ -214,9 +214,9 @@ fn sticks(scene: &Scene<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWal
     Figure {
         panels: panels.collect(),
         legend: vec![
-            (LEGS[0], "left leg".into()),
-            (LEGS[1], "right leg".into()),
-            (Ink::Truth, "reference".into()),
+            Key::line(LEGS[0], "left leg"),
+            Key::line(LEGS[1], "right leg"),
+            Key::dashes(Ink::Truth, "reference"),
         ],
         caption: format!(
             "Agent {agent} from the side at t = {} s: each leg from the pelvis over hip, knee and ankle to heel and toe, at the \

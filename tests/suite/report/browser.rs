@@ -1,6 +1,6 @@
 //! What a browser makes of a report: nothing is cut, nothing overlaps, nothing is asked for from elsewhere.
 
-use super::{Run, address, all_failed};
+use super::{Run, address, all_failed, program};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,6 +12,7 @@ const WIDTHS: [u32; 2] = [1280, 390];
 /// What measuring a page found.
 #[derive(Debug)]
 struct Found {
+    width: u64,
     panels: u64,
     stumbles: Vec<String>,
     requests: Vec<String>,
@@ -32,7 +33,7 @@ fn browser() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page in a window and measures it; `extra` is markup added to it.
+/// Opens a page in a frame of a width and measures it; `extra` is markup added to it. (A window is never narrower than 500 px.)
 fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Found {
     let place = TempDir::new().unwrap();
     let copy = place.path().join("page.html");
@@ -44,6 +45,14 @@ fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Fou
     );
     assert_ne!(measured, html);
     fs::write(&copy, measured).unwrap();
+    let window = place.path().join("window.html");
+    let listen =
+        "addEventListener('message', (told) => { document.body.dataset.found = told.data; })";
+    let frame = format!(
+        "<!DOCTYPE html><body><script>{listen}</script>\
+         <iframe src=\"page.html\" style=\"width:{width}px;height:2000px;border:0\"></iframe></body>"
+    );
+    fs::write(&window, frame).unwrap();
     let scheme = if dark { 0 } else { 1 };
     let output = Command::new(browser)
         .args([
@@ -63,9 +72,9 @@ fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Fou
             place.path().join("profile").display()
         ))
         .arg(format!("--blink-settings=preferredColorScheme={scheme}"))
-        .arg(format!("--window-size={width},2000"))
+        .arg("--window-size=1400,2100")
         .args(["--virtual-time-budget=4000", "--dump-dom"])
-        .arg(address(&copy))
+        .arg(address(&window))
         .output()
         .unwrap();
     let dom = String::from_utf8_lossy(&output.stdout);
@@ -85,16 +94,18 @@ fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Fou
     let requests = answer["requests"].as_array().unwrap().iter();
     let requests = requests.map(|url| url.as_str().unwrap().to_string());
     Found {
+        width: answer["width"].as_u64().unwrap(),
         panels: answer["panels"].as_u64().unwrap(),
         stumbles: stumbles.chain(consoled.map(String::from)).collect(),
         requests: requests.collect(),
     }
 }
 
-fn judge(browser: &Path, run: &Run, least_panels: u64) {
+fn judge(browser: &Path, page: &Path, least_panels: u64) {
     for width in WIDTHS {
         for dark in [false, true] {
-            let found = open(browser, &run.path("report.html"), width, dark, "");
+            let found = open(browser, page, width, dark, "");
+            assert_eq!(found.width, u64::from(width));
             assert!(found.panels >= least_panels, "{found:?}");
             assert!(found.stumbles.is_empty(), "{width} px: {found:#?}");
             assert!(found.requests.is_empty(), "{width} px: {found:#?}");
@@ -105,20 +116,50 @@ fn judge(browser: &Path, run: &Run, least_panels: u64) {
 #[test]
 fn a_browser_shows_the_reports_of_uavs_whole_and_asks_for_nothing() {
     let Some(browser) = browser() else { return };
-    judge(&browser, &Run::of("uav-paper", 64, &[]), 10);
+    let run = Run::of("uav-paper", 64, &[]);
+    judge(&browser, &run.path("report.html"), 10);
 }
 
 #[test]
 fn a_browser_shows_the_reports_of_robots_and_of_strata_whole() {
     let Some(browser) = browser() else { return };
-    judge(&browser, &Run::of("biped-paper", 4, &[]), 14);
-    judge(&browser, &Run::of("uav-faults", 40, &[]), 9);
+    let run = Run::of("biped-paper", 4, &[]);
+    judge(&browser, &run.path("report.html"), 14);
+    let run = Run::of("uav-faults", 40, &[]);
+    judge(&browser, &run.path("report.html"), 9);
 }
 
 #[test]
 fn a_browser_shows_the_report_of_a_run_in_which_all_fails() {
     let Some(browser) = browser() else { return };
-    judge(&browser, &all_failed(), 9);
+    judge(&browser, &all_failed().path("report.html"), 9);
+}
+
+#[test]
+fn a_browser_shows_the_pages_of_replays_whole_and_asks_for_nothing() {
+    let Some(browser) = browser() else { return };
+    // Faults of every kind shaded; robots that walk, and that fall under the PIDs.
+    for (name, controller, least_panels) in [("uav-faults", "pid", 90), ("biped-paper", "ftc", 95)]
+    {
+        let run = Run::of(name, 4, &[]);
+        let dir = run.path("");
+        let asked = [
+            "replay",
+            dir.to_str().unwrap(),
+            "--episode",
+            "1",
+            "--controller",
+            controller,
+            "--quiet",
+        ];
+        let (code, said) = program(&asked);
+        assert_eq!(code, 0, "{said}");
+        judge(
+            &browser,
+            &run.path(&format!("replay-1-{controller}.html")),
+            least_panels,
+        );
+    }
 }
 
 #[test]
@@ -127,7 +168,7 @@ fn cut_labels_overlaps_and_requests_are_noticed() {
     let run = Run::of("smoke", 2, &[]);
     let page = run.path("report.html");
     let panel = |texts: &str| {
-        format!("<svg class=\"panel\" viewBox=\"0 0 100 50\" width=\"100\">{texts}</svg>")
+        format!("<figure><svg viewBox=\"0 0 100 50\" width=\"100\">{texts}</svg></figure>")
     };
     let text = |x: u32, y: u32| format!("<text x=\"{x}\" y=\"{y}\" font-size=\"10\">label</text>");
     let good = panel(&format!("{}{}{}", text(5, 12), text(5, 26), text(5, 40)));

@@ -1,4 +1,4 @@
-// What a reader would stumble over, found by measuring: run in a copy of a report, the answer is left in the page.
+// What a reader would stumble over, found by measuring: run in a copy of a report, which answers to the page whose frame it is in.
 const found = [];
 document.querySelectorAll("details").forEach((details) => (details.open = true));
 if (document.documentElement.scrollWidth > window.innerWidth) {
@@ -10,7 +10,7 @@ const within = (inner, outer, room) =>
 const overlap = (a, b) =>
   Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
 let panels = 0;
-document.querySelectorAll("svg.panel, svg.scale").forEach((svg) => {
+document.querySelectorAll("figure svg, svg.scale").forEach((svg) => {
   const frame = svg.getBoundingClientRect();
   if (frame.width === 0) return;
   panels += 1;
@@ -23,7 +23,7 @@ document.querySelectorAll("svg.panel, svg.scale").forEach((svg) => {
       if (overlap(boxes[i], boxes[j])) found.push(`${name}: "${text.textContent}" overlaps "${texts[j].textContent}"`);
     }
   });
-  if (svg.matches(".panel") && texts.length < 3) found.push(`${name}: has ${texts.length} labels only`);
+  if (!svg.matches(".scale") && texts.length < 3) found.push(`${name}: has ${texts.length} labels only`);
 });
 // What scrolls may be wider than the window; nothing else.
 document.querySelectorAll("p, h1, h2, figcaption, summary, .legend, nav, figure").forEach((element) => {
@@ -31,4 +31,4 @@ document.querySelectorAll("p, h1, h2, figcaption, summary, .legend, nav, figure"
 });
 // Whatever the page asked for, got or not.
 const requests = performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => !name.startsWith("data:"));
-document.body.dataset.found = JSON.stringify({ panels, found, requests });
+parent.postMessage(JSON.stringify({ width: window.innerWidth, panels, found, requests }), "*");

@@ -1,24 +1,18 @@
 //! What has to be known to read the statistics of a run: its sampling design, and what ended it.
 
-use super::line;
-use urts_mc::campaign::{Campaign, Sampling};
-use urts_mc::comparison::FEWEST_REPLICATES;
-use urts_mc::run::Findings;
-use urts_mc::stop::Stopped;
+use crate::campaign::{Campaign, Sampling};
+use crate::comparison::FEWEST_REPLICATES;
+use crate::manifest::Manifest;
+use crate::stop::Stopped;
 
 /// A sentence for each thing that makes a run's statistics other than usual; nothing where nothing does.
-pub(super) fn caveats(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    if let Some(replicates) = campaign.sampling.replicates() {
-        line(&mut text, &of_design(campaign, replicates));
-    }
-    if let Some(stopped) = &findings.manifest.stopped {
-        line(
-            &mut text,
-            &of_stop(stopped, findings.manifest.episodes_asked),
-        );
-    }
-    text
+#[must_use]
+pub fn caveats(campaign: &Campaign, manifest: &Manifest) -> Vec<String> {
+    let replicates = campaign.sampling.replicates();
+    let design = replicates.map(|replicates| of_design(campaign, replicates));
+    let stopped = manifest.stopped.as_ref();
+    let stop = stopped.map(|stopped| of_stop(stopped, manifest.episodes_asked));
+    design.into_iter().chain(stop).collect()
 }
 
 fn of_design(campaign: &Campaign, replicates: u32) -> String {
