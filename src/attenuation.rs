@@ -43,10 +43,12 @@ pub enum NotApplicable {
     )]
     LoopOptions,
     /// A disturbance that is not differentiable.
-    #[error("disturbance {entry} is not continuously differentiable in time")]
+    #[error("disturbance {entry} ({kind}) is not continuously differentiable in time")]
     RoughDisturbance {
         /// Which of the campaign.
         entry: usize,
+        /// What it is.
+        kind: &'static str,
     },
     /// A fault that is not differentiable.
     #[error("fault {entry} ({kind}) is not continuously differentiable in time")]

@@ -26,7 +26,7 @@ use urts_mc::campaign::Campaign;
 use urts_mc::flight::{Backend, Settings};
 use urts_mc::gains::GainSet;
 use urts_mc::junit::{junit, junit_of_error};
-use urts_mc::output::{OutputDir, OutputError, OutputFile};
+use urts_mc::output::{OutputDir, OutputError, OutputFile, is_of_a_run};
 use urts_mc::paper::paper;
 use urts_mc::replay::replay;
 use urts_mc::report::{report, trace};
@@ -76,14 +76,25 @@ impl Overrides {
 }
 
 fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
-    let campaign = arguments.overrides.load()?;
+    let campaign = arguments.overrides.load().map_err(|refused| {
+        // The file of an earlier run must not say that this one passed.
+        let out = arguments.out.clone().unwrap_or_default();
+        let file = arguments.junit_file(&out).ok().flatten();
+        if let Some(JunitFile(file)) = file.filter(|file| file.0.has_place()) {
+            let name = arguments.overrides.campaign.display().to_string();
+            let text = junit_of_error(&name, refused.error.to_string());
+            // Of two errors the campaign's is told.
+            let _ = text.map(|text| file.write(text.as_bytes()));
+        }
+        refused
+    })?;
     let settings = arguments.settings()?;
     let path = arguments
         .out
         .clone()
         .unwrap_or_else(|| Path::new("reports").join(&campaign.name));
     let out = OutputDir::claim(&path, &campaign, arguments.overwrite)?;
-    let report = arguments.junit_file()?;
+    let report = arguments.junit_file(&path)?;
     let extras = Extras {
         csv: arguments.csv,
         cross_check: arguments.cross_check,
@@ -152,10 +163,17 @@ fn not_written(error: OutputError) -> Failure {
 
 impl RunArguments {
     /// The file of `--junit`, of which nothing is left from an earlier run: one that is killed must not look as if it had passed.
-    fn junit_file(&self) -> Result<Option<JunitFile>, Failure> {
+    fn junit_file(&self, out: &Path) -> Result<Option<JunitFile>, Failure> {
         let Some(path) = &self.junit else {
             return Ok(None);
         };
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path.parent() == Some(out) && is_of_a_run(&name) {
+            return Err(Failure::usage(format!(
+                "--junit {}: the run writes a file of this name itself; give another name",
+                path.display()
+            )));
+        }
         let file = OutputFile::claim(path).map_err(not_written)?;
         let earlier = || fs::read_to_string(path).is_ok_and(|text| text.contains("<testsuites"));
         if path.exists() && !self.overwrite && !earlier() {
@@ -384,6 +402,12 @@ impl ReplayFiles {
 fn completions_command(shell: Shell) -> Result<Code, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "urts-mc", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
+    let mut script = String::from_utf8_lossy(&script).into_owned();
+    if shell == Shell::Bash {
+        // The script would look for the options of a subcommand under another name than it gives it, where the program has a
+        // hyphen in its name (clap's issue 6421): it can go once a release has mended that; the test then fails.
+        script = script.replace("urts__subcmd__mc", "urts__mc");
+    }
+    print(&script)?;
     Ok(Code::Done)
 }

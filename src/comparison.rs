@@ -8,6 +8,7 @@
 //! of Mathematical Statistics 27:713-721). Intervals and tests that the sampling design does not allow
 //! ([`crate::sampling::allows`]) are absent; Student's t over the design's replicates takes the place of some.
 
+mod harm;
 mod paired;
 mod rates;
 mod requirements;
@@ -16,13 +17,14 @@ mod strata;
 mod tables;
 mod verdict;
 
+pub use harm::harm;
 pub(crate) use paired::log_ratios;
 pub use paired::{Measured, PairedComparison, Ratio, compare};
 pub use rates::{FailureRate, MetricQuantiles, summarise};
 pub use requirements::{RequirementResult, requirements};
 pub use screening::{Harm, Screening, screen};
 pub use tables::{comparison_table, screening_table, summary_table};
-pub use verdict::verdict;
+pub use verdict::{HOW_SURE, verdict};
 
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, replicate_mean};

@@ -10,6 +10,7 @@ use crate::stop::Watch;
 use crate::tables::{Status, Tables};
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
@@ -115,6 +116,22 @@ pub enum Engine {
         /// Times.
         gpu_times: GpuTimes,
     },
+}
+
+impl fmt::Display for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cpu { simd, threads } => {
+                let lanes = simd.map_or(String::new(), |simd| format!(" ({simd:?})"));
+                let threads = match threads {
+                    1 => "1 thread".to_string(),
+                    many => format!("{many} threads"),
+                };
+                write!(f, "the CPU{}, {threads}", lanes.to_lowercase())
+            }
+            Self::Gpu { adapter, .. } => write!(f, "{} ({})", adapter.name, adapter.driver),
+        }
+    }
 }
 
 /// The tables of a flown campaign, and how they came about.

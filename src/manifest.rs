@@ -54,6 +54,9 @@ pub struct Manifest {
     /// Who does better, a sentence for each opponent of the first controller; empty in runs of older versions.
     #[serde(default)]
     pub verdict: Vec<String>,
+    /// What the strata do to each controller, in sentences ([`crate::comparison::harm`]); empty without strata to compare.
+    #[serde(default)]
+    pub harm: Vec<String>,
     /// Wall-clock times.
     pub times: Times,
 }

@@ -25,7 +25,7 @@ pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
 
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
-/// File name of the manifest, which is written last: a directory that has one holds all episodes that it counts.
+/// File name of the manifest, which is written after the tables: a directory that has one holds all episodes that it counts.
 pub const MANIFEST: &str = "manifest.json";
 
 /// Why a run cannot be written or read.
@@ -333,6 +333,15 @@ fn is_table(name: &str) -> bool {
     TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
 }
 
+/// Whether a run or a replay writes a file of this name into its directory.
+#[must_use]
+pub fn is_of_a_run(name: &str) -> bool {
+    is_table(name)
+        || is_replay(name)
+        || REPORTS.contains(&name)
+        || [MANIFEST, "gains.json"].contains(&name)
+}
+
 /// Whether a file is the table or a figure of a replay.
 fn is_replay(name: &str) -> bool {
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
@@ -346,7 +355,8 @@ fn holds_only_ours(dir: &Path) -> bool {
             .strip_prefix('.')
             .and_then(|name| name.strip_suffix(".part"))
             .unwrap_or(name);
-        is_table(whole) || is_replay(whole) || whole == "gains.json" || REPORTS.contains(&whole)
+        // One with a manifest is a run, of which more is asked.
+        whole != MANIFEST && is_of_a_run(whole)
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

@@ -9,8 +9,11 @@ use crate::tables::{Scores, Status, Table};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// Random permutations of a test: enough for a family of 100 conditions at the level of 5 %, each tested in two ways.
+/// Fewest random permutations of a test.
 const PERMUTATIONS: u32 = 4_000;
+/// Permutations for each condition of a family: so many that the smallest p-value of a condition, which is tested in two ways, is
+/// a third of the 5 % after Holm's correction for the family. Fewer, and no effect however strong could be called sure.
+const PER_CONDITION: usize = 120;
 /// Worst episodes that are listed of each controller.
 const WORST: usize = 10;
 
@@ -62,6 +65,10 @@ pub struct WorstEpisode {
     pub agent: usize,
     /// The channel.
     pub channel: Arc<str>,
+    /// Its stratum, of campaigns that have some.
+    pub stratum: Option<Arc<str>>,
+    /// The faults that struck someone.
+    pub faults: Vec<Arc<str>>,
     /// What the episode met.
     pub conditions: Vec<(String, Option<f64>)>,
 }
@@ -72,7 +79,7 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
     let named: Vec<(&String, Ranked)> = scores
         .conditions
         .iter()
-        .filter_map(|(name, values)| Some((name, Ranked::of(&drawn(campaign, name, values))?)))
+        .filter_map(|(name, values)| Some((name, Ranked::of(&by_chance(campaign, name, values))?)))
         .filter(|(_, values)| values.distinct() > 1)
         .collect();
     let (names, columns): (Vec<&String>, Vec<Ranked>) = named.into_iter().unzip();
@@ -84,7 +91,12 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
     let tested = one && allows(design, Method::EffectTest);
     let permutations = Permutations {
         seed: campaign.seed,
-        most: if tested { PERMUTATIONS } else { 0 },
+        most: match tested {
+            true => {
+                PERMUTATIONS.max(u32::try_from(PER_CONDITION * names.len()).unwrap_or(u32::MAX))
+            }
+            false => 0,
+        },
     };
     let of_target = |(target, outcome): (Target, Outcome)| {
         let effects = effects(&columns, &outcome, LEVEL, permutations);
@@ -101,7 +113,9 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
                 target: target.clone(),
                 condition: (*name).clone(),
                 effect,
-                interval: with_interval.then_some(effect.trend.interval),
+                // Of a few episodes it may be all there is.
+                interval: Some(effect.trend.interval)
+                    .filter(|own| with_interval && (own.lower > -1.0 || own.upper < 1.0)),
                 p_holm: tested.then_some(p_holm),
             })
             .collect();
@@ -118,7 +132,11 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
 /// A condition where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and what
 /// goes with the number (the first onset, the mean over more channels) would be taken for what goes with the stratum: where
 /// some strata draw their faults, faults are ranked in those only.
-fn drawn(campaign: &Campaign, condition: &str, values: &[Option<f64>]) -> Vec<Option<f64>> {
+pub(crate) fn by_chance(
+    campaign: &Campaign,
+    condition: &str,
+    values: &[Option<f64>],
+) -> Vec<Option<f64>> {
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::Drawn;
     let strata = &campaign.strata;
     let only_drawn = match fault_of(condition) {
@@ -264,17 +282,22 @@ impl Bad {
         rank: usize,
     ) -> WorstEpisode {
         let time = campaign.time;
+        let index = u32::try_from(self.episode).unwrap_or(u32::MAX);
+        let faults = campaign.faults.iter().zip(&scores.fault_occurs);
+        let struck = faults.filter(|(_, occurs)| occurs.get(self.episode) == Some(&true));
         let conditions = scores.conditions.iter();
         WorstEpisode {
             controller: controller.to_string(),
             rank,
-            episode: u32::try_from(self.episode).unwrap_or(u32::MAX),
+            episode: index,
             status: self.status,
             excess: self.excess,
             failed_at_s: (self.failed_step != u32::MAX)
                 .then(|| f64::from(self.failed_step) * time.step_s),
             agent: self.agent,
             channel: campaign.channels()[self.channel].clone(),
+            stratum: campaign.strata.of(index).map(|own| own.name.clone()),
+            faults: struck.map(|(fault, _)| fault.name.clone()).collect(),
             conditions: conditions
                 .map(|(name, values)| (name.clone(), values[self.episode]))
                 .collect(),
@@ -329,6 +352,10 @@ pub fn worst_table(worst: &[WorstEpisode]) -> Table {
             .real_if("failed_at_s", episode.failed_at_s)
             .count(|| "agent".into(), episode.agent as u64)
             .name(|| "channel".into(), episode.channel.clone());
+        if let Some(stratum) = &episode.stratum {
+            row.name(|| "stratum".into(), stratum.clone());
+        }
+        row.name(|| "faults".into(), episode.faults.join(", ").into());
         for (name, value) in &episode.conditions {
             row.real_if(name, *value);
         }

@@ -20,6 +20,7 @@ mod trace;
 pub use evidence::ReportError;
 pub use trace::{Trace, trace};
 
+use crate::comparison::HOW_SURE;
 use crate::output::{OutputDir, REPORTS};
 use crate::shortcomings::{shortcoming, unmet};
 use document::Document;
@@ -55,6 +56,10 @@ fn document(evidence: &Evidence) -> Document {
         Some(conditions::drawn(evidence)),
         Some(provenance::section(evidence)),
     ];
+    let mut lead = manifest.verdict.clone();
+    if manifest.episodes > 1 && campaign.controllers.len() > 1 {
+        lead.push(format!("({HOW_SURE})"));
+    }
     Document {
         title: manifest.name.clone(),
         subtitle: format!(
@@ -66,7 +71,7 @@ fn document(evidence: &Evidence) -> Document {
             campaign.controllers.join(", "),
             manifest.seed
         ),
-        lead: manifest.verdict.clone(),
+        lead,
         warnings: wrong.into_iter().flatten().collect(),
         sections: sections.into_iter().flatten().collect(),
     }

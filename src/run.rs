@@ -223,6 +223,7 @@ pub fn run_on(
         stopped: watch.found(campaign),
         requirements,
         verdict: comparison::verdict(&summary, &comparisons),
+        harm: comparison::harm(&screenings),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: settings.precision,
         legs,

@@ -5,6 +5,7 @@ use crate::comparison::{LEVEL, RequirementResult};
 use crate::cross_check::{ERROR_LIMIT, RMSE_LIMIT};
 use crate::manifest::Manifest;
 use crate::statistics::runs_needed;
+use crate::words::rounded_up;
 use std::path::Path;
 
 /// Why the result of a run, written to `out`, is not to be relied on, one reason a line: episodes are missing, or the cross-check
@@ -96,8 +97,11 @@ pub(crate) fn reason(result: &RequirementResult) -> String {
         _ => "change the controller or the limit".to_string(),
     };
     format!(
-        "{:?} failed in {} of {} episodes{place}, so with 95 % confidence its failure rate is known only to be below {:.4}; \
+        "{:?} failed in {} of {} episodes{place}, so with 95 % confidence its failure rate is known only to be below {}; \
          {remedy}",
-        result.controller, result.failed, result.n, result.upper_95,
+        result.controller,
+        result.failed,
+        result.n,
+        rounded_up(result.upper_95, 4),
     )
 }

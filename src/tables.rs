@@ -1,7 +1,7 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use crate::backend::Flown;
-use crate::campaign::{Agent, Campaign, ChannelGroup, Time};
+use crate::campaign::{Agent, Campaign, ChannelGroup, FaultChannels, Parameter, Time};
 use crate::conditions::{Condition, conditions};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
@@ -433,7 +433,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     {
         for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
             let acts = |channel: usize| disturbance.kind.acts_on(channel);
-            let applied = where_it(values, acts);
+            let applied = where_it(&as_flown(campaign.time, parameter, values), acts);
             write_channels(row, campaign, &applied, |channel| {
                 format!("disturbance{index}_{}_{channel}", parameter.name)
             });
@@ -441,14 +441,19 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     }
     for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
         row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
+        if fault.channels == FaultChannels::One {
+            let channel = drawn.strikes.iter().position(|strikes| *strikes);
+            let struck = channel.and_then(|channel| campaign.channels().get(channel));
+            let struck = struck.map_or("".into(), Clone::clone);
+            row.name(|| format!("fault{index}_channel"), struck);
+        }
         let (time, occurs) = (campaign.time, drawn.occurs());
         let mut of_time = |name: &str, steps: f64| {
-            let length_s = if occurs {
-                steps * time.step_s
-            } else {
-                f64::NAN
-            };
-            row.real(|| format!("fault{index}_{name}"), length_s);
+            let length_s = occurs.then_some(steps * time.step_s);
+            row.real(
+                || format!("fault{index}_{name}"),
+                length_s.unwrap_or(f64::NAN),
+            );
         };
         of_time("onset_s", f64::from(time.onset_step(drawn.onset_s)));
         if fault.duration_s.is_some() {
@@ -458,12 +463,23 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
             of_time("ramp_s", (drawn.ramp_s / time.step_s).round());
         }
         for (parameter, values) in fault.kind.parameters().iter().zip(&drawn.parameters) {
-            let applied = where_it(values, |channel| drawn.strikes[channel]);
+            let flown = as_flown(campaign.time, parameter, values);
+            let applied = where_it(&flown, |channel| drawn.strikes[channel]);
             write_channels(row, campaign, &applied, |channel| {
                 format!("fault{index}_{}_{channel}", parameter.name)
             });
         }
     }
+}
+
+/// Lengths of time that are flown in whole steps as they are flown; all else as it was drawn.
+fn as_flown(time: Time, parameter: &Parameter, values: &[f64]) -> Vec<f64> {
+    let flown = |value: &f64| match parameter.name {
+        "onset_s" => f64::from(time.onset_step(*value)) * time.step_s,
+        "delay_s" | "burst_s" | "window_s" | "duration_s" => time.whole_steps(*value) * time.step_s,
+        _ => *value,
+    };
+    values.iter().map(flown).collect()
 }
 
 /// The values of the channels on which something acts; not a number elsewhere.

@@ -15,6 +15,27 @@ pub fn rate(value: f64, interval: Option<[f64; 2]>) -> String {
     }
 }
 
+/// An upper bound with so many decimals: never below what was proved.
+#[must_use]
+pub fn rounded_up(bound: f64, decimals: usize) -> String {
+    let nearest = format!("{bound:.decimals$}");
+    if nearest.parse().is_ok_and(|nearest: f64| nearest < bound) {
+        let last = 0.1_f64.powi(i32::try_from(decimals).unwrap_or(i32::MAX));
+        return format!("{:.decimals$}", bound + 0.5 * last);
+    }
+    nearest
+}
+
+/// An upper bound of a share, in percent.
+#[must_use]
+pub fn at_most(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent.is_finite() {
+        true => format!("{} %", rounded_up(percent, decimals_of(percent))),
+        false => "-".to_string(),
+    }
+}
+
 /// A difference of shares in percentage points with its interval, signs written out.
 #[must_use]
 pub fn points(value: f64, lower: f64, upper: f64) -> String {
@@ -36,10 +57,14 @@ pub fn correlation(value: f64, interval: Option<[f64; 2]>) -> String {
 
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
+    format!("{percent:.*}", decimals_of(percent))
+}
+
+fn decimals_of(percent: f64) -> usize {
     if percent != 0.0 && percent < 10.0 {
-        format!("{percent:.2}")
+        2
     } else {
-        format!("{percent:.1}")
+        1
     }
 }
 

@@ -23,9 +23,15 @@ pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option
     {
         return Some(NotApplicable::LoopOptions);
     }
-    let mut disturbances = campaign.disturbances.iter();
-    if let Some(entry) = disturbances.position(|disturbance| !is_smooth_force(disturbance.kind)) {
-        return Some(NotApplicable::RoughDisturbance { entry });
+    let rough = |kind: DisturbanceKind| {
+        let reaches = |struck| kind.acts_on(struck) && command_meets(campaign, struck, channel);
+        !is_smooth_force(kind) && (0..campaign.channels().len()).any(reaches)
+    };
+    for (entry, disturbance) in campaign.disturbances.iter().enumerate() {
+        if rough(disturbance.kind) {
+            let kind = disturbance.kind.name();
+            return Some(NotApplicable::RoughDisturbance { entry, kind });
+        }
     }
     let rough = |&(_, (fault, own)): &(usize, (&Fault, &FaultDraw))| {
         (0..own.strikes.len())
@@ -99,9 +105,17 @@ fn is_smooth_force(kind: DisturbanceKind) -> bool {
 /// Whether a jump of a fault on channel `struck` is a jump of f1 or f2 of channel `channel`. The torques of a leg act on all
 /// its joints at once; a UAV's channels, and whatever passes through a sensor, act on others through integrals only.
 fn meets(campaign: &Campaign, fault: &Fault, struck: usize, channel: usize) -> bool {
-    match (fault.target, fault.link, &campaign.agent) {
-        (FaultTarget::Plant, ..) => true,
-        (_, Link::Measurement, _) | (_, Link::Command, Agent::Uav(_)) => struck == channel,
-        (_, Link::Command, Agent::Biped(_)) => struck / LEG_JOINTS == channel / LEG_JOINTS,
+    match (fault.target, fault.link) {
+        (FaultTarget::Plant, _) => true,
+        (_, Link::Measurement) => struck == channel,
+        (_, Link::Command) => command_meets(campaign, struck, channel),
+    }
+}
+
+/// The same for whatever acts like a command.
+fn command_meets(campaign: &Campaign, struck: usize, channel: usize) -> bool {
+    match &campaign.agent {
+        Agent::Uav(_) => struck == channel,
+        Agent::Biped(_) => struck / LEG_JOINTS == channel / LEG_JOINTS,
     }
 }

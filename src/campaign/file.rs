@@ -12,6 +12,7 @@ pub use value::{
     ChannelsFile, DistributionFile, NormalFile, Numbers, Per, TruncatedNormalFile, Value,
 };
 
+use crate::lists::exact;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -104,6 +105,7 @@ pub struct AgentFile {
     /// Modelled mass, kg (default 2).
     pub mass_kg: Option<f64>,
     /// Modelled principal inertias, kg m^2 (default 1.25, 1.25, 2.2).
+    #[serde(default, deserialize_with = "exact")]
     pub inertia_kg_m2: Option<[f64; 3]>,
     /// Translational damping, N s/m (default 0.01).
     pub drag_n_s_m: Option<f64>,
@@ -168,6 +170,7 @@ pub struct ReferenceFile {
     #[serde(default, deserialize_with = "some_table")]
     pub gait: Option<GaitFile>,
     /// Waypoints: offset of each agent from the points, m.
+    #[serde(default, deserialize_with = "exact")]
     pub offset_m: Option<Vec<[f64; 3]>>,
     /// Waypoints: bound on the speed, m/s.
     pub max_speed_m_s: Option<f64>,
@@ -238,6 +241,7 @@ pub struct GaitFile {
     /// Spacing of the points interpolated between waypoints; longer steps make wider bends, m (default 2).
     pub smoothing_step_m: Option<f64>,
     /// Centre of mass in the pelvis frame, m (default: that of the standing pose).
+    #[serde(default, deserialize_with = "exact")]
     pub com_offset_m: Option<[f64; 3]>,
 }
 
@@ -288,6 +292,7 @@ pub struct NamedGainsFile {
 #[serde(deny_unknown_fields)]
 pub struct WeightsFile {
     /// Weights on the tracking error [int e, e, e'].
+    #[serde(default, deserialize_with = "exact")]
     pub q1: Option<[f64; 3]>,
     /// Weights on the estimation error, one per observer state.
     pub q2: Option<Vec<f64>>,
@@ -300,6 +305,7 @@ pub struct WeightsFile {
     /// Weight of the sensor fault's model error in the filter.
     pub eps2: Option<f64>,
     /// Input of the sensor fault into [int y, y, y'], B20 of (34).
+    #[serde(default, deserialize_with = "exact")]
     pub sensor_fault_input: Option<[f64; 3]>,
     /// Measurement noise of the "pid" observer.
     pub pid_nu: Option<f64>,
@@ -310,6 +316,7 @@ pub struct WeightsFile {
     /// Smoothing model: spacing of the taps, s.
     pub smoothing_spacing_s: Option<f64>,
     /// Smoothing model: windows of the actuator and of the sensor fault.
+    #[serde(default, deserialize_with = "exact")]
     pub smoothing_windows: Option<[usize; 2]>,
     /// Smoothing model: first row of the companion matrix instead of order and leak.
     pub smoothing_weights: Option<Vec<f64>>,

@@ -53,10 +53,21 @@ pub struct Ratio {
     /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is the mean of
     /// their medians.
     pub over_replicates: Option<Estimate>,
+    /// Mid-p of the sign test of that median, of independent draws.
+    pub sign_p: Option<f64>,
     /// Share of the episodes in which `a` is better; ties count half.
     pub win_rate: Option<Measured>,
     /// Episodes in which only `a`, only `b` and both diverged.
     pub diverged: [u64; 3],
+}
+
+impl Ratio {
+    /// The log-ratio with the interval that the sampling design allows: over its replicates where it has them.
+    #[must_use]
+    pub fn known(&self) -> Option<Measured> {
+        let over_replicates = self.over_replicates.map(|found| measured(found, true));
+        over_replicates.or(self.log_ratio)
+    }
 }
 
 /// Every pair of controllers, in the campaign's order: in all episodes, then in each stratum.
@@ -185,6 +196,7 @@ fn ratio(
         log_ratio: median(&of(&part.episodes))
             .map(|found| measured(found, allows(design, Method::Quantile))),
         over_replicates: medians.and_then(|medians| over_replicates(&medians)),
+        sign_p: allows(design, Method::Paired).then(|| mcnemar_mid_p(wins, losses)),
         win_rate: win_rate(wins, losses, ties, LEVEL)
             .map(|found| measured(found, allows(design, Method::Paired))),
         diverged,

@@ -32,10 +32,9 @@ pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Part> {
     }
     for (index, (fault, occurs)) in campaign.faults.iter().zip(&scores.fault_occurs).enumerate() {
         if fault.probability < 1.0 {
-            let kind = fault.kind.name();
             let (with, without) = all.iter().copied().partition(|&episode| occurs[episode]);
             for (word, episodes) in [("with", with), ("without", without)] {
-                let name = format!("{word} fault{index} {kind}").into();
+                let name = format!("{word} fault{index} {}", fault.name).into();
                 parts.push(Part { name, episodes });
             }
         }

@@ -1,9 +1,11 @@
 //! Who does better, in a sentence for each opponent of the first controller.
 
-use super::paired::{Measured, PairedComparison, Ratio};
+use super::LEVEL;
+use super::paired::{PairedComparison, Ratio};
 use super::rates::MetricQuantiles;
 use crate::campaign::ALL;
 use crate::statistics::Interval;
+use crate::words::rounded_up;
 
 /// What an interval says about the first of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,8 +15,12 @@ enum Side {
     Unsure,
 }
 
+/// How sure the sentences of [`verdict`] are.
+pub const HOW_SURE: &str = "better and worse are said where exact tests agree, at 5 % for all these statements together; intervals 95 %";
+
 /// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how often it
-/// fails if it is the only one. "Better" and "worse" are said where a 95 % interval leaves no doubt, and each sentence has the
+/// fails if it is the only one. "Better" and "worse" are said where the 95 % interval and an exact test (McNemar's mid-p of the
+/// failures, the sign test of the errors; at 5 % over the number of all that is looked at) leave no doubt; each sentence has the
 /// numbers that it stands on.
 #[must_use]
 pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
@@ -22,8 +28,11 @@ pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) ->
     let of_first = comparisons
         .iter()
         .filter(|own| Some(&own.a) == first && *own.stratum == *ALL);
+    let of_first: Vec<&PairedComparison> = of_first.collect();
+    // Of each opponent, the failures and every channel group.
+    let looks = of_first.iter().map(|pair| 1 + groups(pair).count()).sum();
     match first {
-        Some(_) => of_first.map(of_pair).collect(),
+        Some(_) => of_first.iter().map(|pair| of_pair(pair, looks)).collect(),
         None => summary.first().map(of_one).into_iter().collect(),
     }
 }
@@ -32,31 +41,33 @@ fn of_one(row: &MetricQuantiles) -> String {
     let rate = &row.failures;
     let (name, failed, n) = (&rate.controller, rate.failed(), rate.n);
     let known = match (rate.upper_95, rate.interval()) {
-        (Some(upper), _) => format!("its failure rate is below {:.2} %", 100.0 * upper),
-        (None, Some(Interval { lower, upper })) => format!(
-            "its failure rate is between {:.2} and {:.2} %",
-            100.0 * lower,
-            100.0 * upper
-        ),
-        (None, None) => "these episodes give no bound of its failure rate".to_string(),
+        // Of one that fails often, an upper bound says nothing.
+        (Some(upper), _) if 2 * failed <= n => {
+            format!("is below {} %", rounded_up(100.0 * upper, 2))
+        }
+        (_, Some(Interval { lower, upper })) => {
+            format!("is between {:.2} and {:.2} %", 100.0 * lower, 100.0 * upper)
+        }
+        (_, None) => "has no bound from these episodes".to_string(),
     };
-    format!("{name} fails in {failed} of {n} episodes: {known}")
+    format!(
+        "{name} fails in {failed} of {n} episodes: with 95 % confidence its failure rate {known}"
+    )
 }
 
-fn of_pair(pair: &PairedComparison) -> String {
+fn groups(pair: &PairedComparison) -> impl Iterator<Item = &Ratio> {
+    pair.ratios.iter().filter(|ratio| ratio.scope == "group")
+}
+
+fn of_pair(pair: &PairedComparison, looks: usize) -> String {
     let failures = &pair.failures;
     let n = failures.both + failures.only_a + failures.only_b + failures.neither;
-    let groups: Vec<&Ratio> = pair
-        .ratios
-        .iter()
-        .filter(|ratio| ratio.scope == "group")
-        .collect();
     if n == 1 {
-        return of_one_episode(pair, &groups);
+        return of_one_episode(pair);
     }
-    let (by_failures, failing) = failing(pair, n);
+    let (by_failures, failing) = failing(pair, n, looks);
     let (sides, errors): (Vec<Option<Side>>, Vec<String>) =
-        groups.iter().map(|group| error_of(group)).unzip();
+        groups(pair).map(|group| error_of(group, looks)).unzip();
     let errors = match sides.iter().all(|own| *own == Some(Side::Unsure)) {
         true => "not clearly different".to_string(),
         false => errors.join(" and "),
@@ -80,7 +91,7 @@ fn of_pair(pair: &PairedComparison) -> String {
 }
 
 /// What a single episode shows.
-fn of_one_episode(pair: &PairedComparison, groups: &[&Ratio]) -> String {
+fn of_one_episode(pair: &PairedComparison) -> String {
     let (a, b, failures) = (&pair.a, &pair.b, &pair.failures);
     let failing = match (failures.both, failures.only_a, failures.only_b) {
         (0, 0, 0) => "neither fails".to_string(),
@@ -88,19 +99,22 @@ fn of_one_episode(pair: &PairedComparison, groups: &[&Ratio]) -> String {
         (0, _, _) => format!("{a} fails"),
         _ => "both fail".to_string(),
     };
-    let error = |group: &&Ratio| {
+    let error = |group: &Ratio| {
         let found = group.log_ratio?;
         Some(format!("{} in {}", times(found.value, None), group.name))
     };
-    let errors: Vec<String> = groups.iter().filter_map(error).collect();
+    let errors: Vec<String> = groups(pair).filter_map(error).collect();
+    let errors = match groups(pair).any(|group| group.diverged[2] > 0) {
+        true => "both diverge, so there are no errors to compare".to_string(),
+        false => format!("the RMS error of {a} is {}", errors.join(" and ")),
+    };
     format!(
-        "{a} against {b} in this one episode, which tells nothing of others: {failing}; the RMS error of {a} is {}",
-        errors.join(" and ")
+        "{a} against {b} in this one episode, which tells nothing of others: {failing}; {errors}"
     )
 }
 
 /// Whether `a` fails less often.
-fn failing(pair: &PairedComparison, n: u64) -> (Side, String) {
+fn failing(pair: &PairedComparison, n: u64, looks: usize) -> (Side, String) {
     let failures = &pair.failures;
     let of_a = failures.both + failures.only_a;
     let of_b = failures.both + failures.only_b;
@@ -118,7 +132,9 @@ fn failing(pair: &PairedComparison, n: u64) -> (Side, String) {
     );
     let interval = pair.difference.and_then(|found| found.interval);
     // Fewer failures are better.
-    let side = interval.map_or(Side::Unsure, |own| side(-own.upper, -own.lower));
+    let side = interval.map_or(Side::Unsure, |own| {
+        sure(side(-own.upper, -own.lower), pair.mid_p, looks)
+    });
     let value = percent(of_a) - percent(of_b);
     let points = match interval {
         Some(Interval { lower, upper }) => format!(
@@ -136,17 +152,11 @@ fn failing(pair: &PairedComparison, n: u64) -> (Side, String) {
 }
 
 /// Whether the errors of `a` are smaller on a group of channels; none where no interval tells.
-fn error_of(ratio: &Ratio) -> (Option<Side>, String) {
+fn error_of(ratio: &Ratio, looks: usize) -> (Option<Side>, String) {
     let name = &ratio.name;
-    let found = ratio
-        .over_replicates
-        .map(|found| Measured {
-            value: found.value,
-            interval: Some(found.interval),
-        })
-        .or(ratio.log_ratio);
+    let found = ratio.known();
     let interval = found.and_then(|found| found.interval);
-    let side = interval.map(|own| side(own.lower, own.upper));
+    let side = interval.map(|own| sure(side(own.lower, own.upper), ratio.sign_p, looks));
     let words = match (side, found) {
         (_, None) => format!("unknown in {name}"),
         (None, Some(found)) => format!("{} in {name} (no interval)", times(found.value, None)),
@@ -154,6 +164,14 @@ fn error_of(ratio: &Ratio) -> (Option<Side>, String) {
         (Some(_), Some(found)) => format!("{} in {name}", times(found.value, interval)),
     };
     (side, words)
+}
+
+/// A side, if its test (where the sampling design has one) agrees with so many looks at the data.
+fn sure(side: Side, p: Option<f64>, looks: usize) -> Side {
+    match p {
+        Some(p) if p * looks as f64 > 1.0 - LEVEL => Side::Unsure,
+        _ => side,
+    }
 }
 
 /// What an interval of "how much better" says.

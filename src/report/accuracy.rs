@@ -18,9 +18,17 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
         return Section::new("Pair by pair", vec![Block::text(text)]);
     }
     let replicates = evidence.campaign.sampling.replicates().is_some();
-    let (log_ratio, kind) = match replicates {
-        true => ("log_ratio_replicates", "Student's t over the replicates"),
-        false => ("log_ratio", "BCa"),
+    let known = (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
+    let (log_ratio, interval) = match (replicates, known) {
+        (true, true) => (
+            "log_ratio_replicates",
+            "with its 95 % interval (Student's t over the replicates)",
+        ),
+        (true, false) => (
+            "log_ratio",
+            "without an interval, since the replicates are too few",
+        ),
+        (false, _) => ("log_ratio", "with its 95 % interval (BCa)"),
     };
     let mut failures = Grid::new([
         "pair",
@@ -77,7 +85,7 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
     }
     let explained = format!(
         "The same episodes under both controllers. Factor: median over the episodes of the ratio of RMS errors, averaged over \
-         the team in the logarithm, with its 95 % interval ({kind}); above 1 the first is closer. A diverged episode counts as \
+         the team in the logarithm, {interval}; above 1 the first is closer. A diverged episode counts as \
          infinitely bad, a pair of two as a tie."
     );
     Section::new(
@@ -210,7 +218,6 @@ fn quantiles(evidence: &Evidence) -> Grid {
         let group = sheet.text(row, "group");
         let roles = evidence.campaign.channel_groups();
         let role = roles.iter().find(|own| own.role.name() == group);
-        // Of a team there is one number per group; what belongs to single channels is in summary.csv.
         let Some(role) = role else { continue };
         let cell = |q: &str| {
             Cell::number(words::measured(

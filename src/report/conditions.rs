@@ -3,7 +3,9 @@
 use super::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use super::evidence::{Evidence, whole};
 use super::panel::{Axis, Ink, Mark, Panel, Stroke};
-use crate::conditions::{fault_of, title};
+use crate::conditions::{conditions, title};
+use crate::draw::draw;
+use crate::ranking::by_chance;
 use crate::words;
 use std::collections::BTreeMap;
 
@@ -103,7 +105,7 @@ pub(crate) fn ranking(evidence: &Evidence) -> Section {
         };
         blocks.push(Block::Text(format!(
             "Of each, the strongest {MOST} {which}; ranking.csv has all. A quantity that is drawn for each agent and channel \
-             counts by its root mean square over the team."
+             counts by its root mean square over the team, an onset by the first."
         )));
         blocks.push(Block::Grid(grid));
     }
@@ -135,7 +137,7 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
         return None;
     }
     // Of a count, whose values are few, all episodes with the same belong together.
-    let by_value = || order.chunk_by(|&a, &b| met[a] == met[b]);
+    let by_value = || order.chunk_by(|&a, &b| met[a].total_cmp(&met[b]).is_eq());
     let few = by_value().count() <= BINS;
     let bins: Vec<&[usize]> = match few {
         true => by_value().collect(),
@@ -190,48 +192,19 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
     })
 }
 
-/// The size of a condition in each episode: the root mean square over team and channels, as the ranking takes it.
+/// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where it does
+/// not apply.
 fn sizes(evidence: &Evidence, condition: &str) -> Vec<f64> {
-    let sheet = &evidence.episodes;
-    let columns = columns_of(evidence, condition);
-    let episodes = evidence.manifest.episodes as usize;
-    let mut sums = vec![(0.0, 0.0); episodes];
-    let first = evidence.campaign.controllers.first();
-    for row in 0..sheet.rows() {
-        if first.is_none_or(|name| **name != *sheet.text(row, "controller")) {
-            continue;
-        }
-        let Some((sum, count)) = sums.get_mut(whole(sheet.real(row, "episode"))) else {
-            continue;
-        };
-        for column in &columns {
-            let value = sheet.real(row, column);
-            if value.is_finite() {
-                *sum += value * value;
-                *count += 1.0;
-            }
-        }
-    }
-    let size = |(sum, count): (f64, f64)| {
-        let counts = condition.ends_with("_agents");
-        if counts { sum } else { (sum / count).sqrt() }
+    let of_episode = |episode: u32| {
+        let all = conditions(&evidence.campaign, &draw(&evidence.campaign, episode));
+        let own = all.into_iter().find(|(name, _)| name == condition);
+        own.and_then(|(_, size)| size)
     };
-    sums.into_iter().map(size).collect()
-}
-
-/// The columns of the episode table that a condition sums up.
-fn columns_of(evidence: &Evidence, condition: &str) -> Vec<String> {
-    let sheet = &evidence.episodes;
-    if let Some((index, "agents")) = fault_of(condition) {
-        return vec![format!("fault{index}_occurs")];
-    }
-    if sheet.has(condition) {
-        return vec![condition.to_string()];
-    }
-    let channels = evidence.campaign.channels().iter();
-    channels
-        .map(|channel| format!("{condition}_{channel}"))
-        .filter(|column| sheet.has(column))
+    let sizes: Vec<Option<f64>> = (0..evidence.manifest.episodes).map(of_episode).collect();
+    let drawn = by_chance(&evidence.campaign, condition, &sizes);
+    drawn
+        .into_iter()
+        .map(|size| size.unwrap_or(f64::NAN))
         .collect()
 }
 
@@ -324,6 +297,7 @@ pub(crate) fn worst(evidence: &Evidence) -> Section {
         "failed at, s",
         "largest error over its limit",
         "where",
+        "faults",
         "replay",
     ]);
     let mut rest = grid.clone();
@@ -345,6 +319,10 @@ pub(crate) fn worst(evidence: &Evidence) -> Section {
                 sheet.text(row, "channel"),
                 sheet.real(row, "agent")
             )),
+            Cell::text(match sheet.text(row, "faults") {
+                "" => "none",
+                faults => faults,
+            }),
             Cell::Code(format!(
                 "urts-mc replay {} --episode {episode:.0} --controller {controller}",
                 evidence.dir.display()

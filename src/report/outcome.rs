@@ -112,7 +112,7 @@ fn rates(evidence: &Evidence) -> Grid {
             )),
             count("exceeded"),
             count("diverged"),
-            Cell::number(words::rate(bound, None)),
+            Cell::number(words::at_most(bound)),
         ]);
     }
     grid
@@ -139,7 +139,7 @@ fn requirements(evidence: &Evidence) -> Grid {
             ),
             Cell::text(result.stratum.clone()),
             Cell::number(words::rate(result.limit, None)),
-            Cell::number(words::rate(result.upper_95, None)),
+            Cell::number(words::at_most(result.upper_95)),
             Cell::number(format!("{} of {}", result.failed, result.n)),
         ]);
     }

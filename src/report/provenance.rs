@@ -2,7 +2,7 @@
 
 use super::document::{Block, Cell, Grid, Section};
 use super::evidence::Evidence;
-use crate::flight::{Engine, Leg};
+use crate::flight::Leg;
 
 /// Version, seed, machine, times, cross-check, and the campaign's text.
 pub(crate) fn section(evidence: &Evidence) -> Section {
@@ -77,18 +77,13 @@ pub(crate) fn section(evidence: &Evidence) -> Section {
 }
 
 fn engine(leg: &Leg, several: bool) -> String {
-    let what = match &leg.engine {
-        Engine::Cpu { simd, threads } => {
-            let lanes = simd.map_or(String::new(), |simd| format!(" ({simd:?})").to_lowercase());
-            format!("the CPU{lanes}, {threads} threads")
-        }
-        Engine::Gpu { adapter, .. } => format!("{}, driver {}", adapter.name, adapter.driver),
-    };
+    let Leg {
+        engine,
+        episodes,
+        first,
+    } = leg;
     match several {
-        true => format!(
-            "{what}: {} episodes from number {}",
-            leg.episodes, leg.first
-        ),
-        false => what,
+        true => format!("{engine}: {episodes} episodes from number {first}"),
+        false => engine.to_string(),
     }
 }

@@ -89,11 +89,6 @@ impl Sheet {
         }
     }
 
-    /// Whether there is such a column.
-    pub(crate) fn has(&self, name: &str) -> bool {
-        self.columns.contains_key(name)
-    }
-
     /// The rows whose text columns have these values.
     pub(crate) fn find<'a>(
         &'a self,

@@ -92,11 +92,15 @@ fn ending(scene: &Scene<'_>, flight: &Flight<'_>) -> String {
                 (Status::Ok, _) => return None,
                 (Status::Exceeded, Some(_)) => "broke max_error",
                 (Status::Exceeded, None) => "broke max_rmse",
-                (Status::Diverged, _) => "diverged",
+                (Status::Diverged, _) => "failed",
             };
             let when = scene.failed_at_s(flight, agent);
             let when = when.map_or(String::new(), |t_s| format!(" at {t_s:.3} s"));
-            Some(format!("agent {agent} {how}{when}"))
+            let then = match outcome.diverged {
+                true => " and diverged",
+                false => "",
+            };
+            Some(format!("agent {agent} {how}{when}{then}"))
         })
         .collect();
     let name = flight.name;

@@ -2,6 +2,7 @@
 
 use super::check::{Check, Names, Place, RawJoint, tensor};
 use super::{Body, Foot, JOINTS, Joint, LEG_JOINTS, Leg, Robot, RobotError};
+use crate::lists::exact;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::Path;
@@ -247,10 +248,12 @@ struct RobotFile {
     licence: String,
     attribution: String,
     /// World frame, m/s^2.
+    #[serde(deserialize_with = "exact")]
     gravity: [f64; 3],
     /// m
     root_height_nominal: f64,
     /// rad
+    #[serde(deserialize_with = "exact")]
     q_nominal: [f64; JOINTS],
     base: BaseTable,
     foot: FootTable,
@@ -262,8 +265,10 @@ struct RobotFile {
 struct BaseTable {
     name: String,
     mass: f64,
+    #[serde(deserialize_with = "exact")]
     com: [f64; 3],
     /// ixx, ixy, ixz, iyy, iyz, izz about the centre of mass, kg m^2.
+    #[serde(deserialize_with = "exact")]
     inertia: [f64; 6],
 }
 
@@ -274,17 +279,25 @@ struct FootTable {
     left_joint: i64,
     /// Index of the right leg's last joint.
     right_joint: i64,
+    #[serde(deserialize_with = "exact")]
     ankle_offset: [f64; 3],
     /// Origin of the sole's frame in the last link's frame; the left one's if `right_foot_xyz` is given.
+    #[serde(deserialize_with = "exact")]
     sole_offset: [f64; 3],
+    #[serde(default, deserialize_with = "exact")]
     right_foot_xyz: Option<[f64; 3]>,
     /// Angles of the sole's frame in the last link's frame (default: parallel to it).
+    #[serde(default, deserialize_with = "exact")]
     left_foot_rpy: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "exact")]
     right_foot_rpy: Option<[f64; 3]>,
     /// Bounds of the sole in its frame.
+    #[serde(default, deserialize_with = "exact")]
     sole_x: Option<[f64; 2]>,
+    #[serde(default, deserialize_with = "exact")]
     sole_y: Option<[f64; 2]>,
     /// Corners of the sole in its frame (default: those of the bounds).
+    #[serde(default, deserialize_with = "exact")]
     sole_corners: Option<Vec<[f64; 2]>>,
 }
 
@@ -298,16 +311,21 @@ struct JointRow {
     _source_name: Option<String>,
     /// Index of the joint before it, -1 for the pelvis.
     parent: i64,
+    #[serde(deserialize_with = "exact")]
     xyz: [f64; 3],
     /// Roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
+    #[serde(deserialize_with = "exact")]
     rpy: [f64; 3],
+    #[serde(deserialize_with = "exact")]
     axis: [f64; 3],
     q_min: f64,
     q_max: f64,
     qd_max: f64,
     tau_max: f64,
     mass: f64,
+    #[serde(deserialize_with = "exact")]
     com: [f64; 3],
+    #[serde(deserialize_with = "exact")]
     inertia: [f64; 6],
     armature: f64,
     /// Another source's armature; not used.

@@ -10,18 +10,17 @@
 //! | independent ([`Address::unit`]) | independent and uniform | all statistics |
 //! | [`latin_hypercube`] | each of the n strata of width 1/n once | an outcome's additive part free of most error |
 //! | [`sobol`] | an Owen-scrambled net, in groups of four dimensions | that too, and interactions within a group |
-//! | [`factorial`], [`one_at_a_time`] | the middles of equally likely levels | a picture without chance |
 //!
 //! **What may be concluded.** In a stratified design the episodes are not independent, and the
 //! statistics that count on it are wrong: too cautious mostly, but not provably. [`allows`] is this
 //! table:
 //!
-//! | statistic | independent | Latin hypercube | Sobol | factorial, one at a time |
-//! |---|---|---|---|---|
-//! | rates, means, quantiles as estimates | yes | yes | yes | no: no random sample |
-//! | binomial and sequential bounds, order statistics, BCa, paired tests, intervals of effects | yes | no | no | no |
-//! | permutation tests of effects | yes | yes, within one hypercube | no | no |
-//! | Student's t over replicates ([`replicate_mean`](crate::statistics::replicate_mean)) | yes | yes | yes | no |
+//! | statistic | independent | Latin hypercube | Sobol |
+//! |---|---|---|---|
+//! | rates, means, quantiles as estimates | yes | yes | yes |
+//! | binomial and sequential bounds, order statistics, BCa, paired tests, intervals of effects | yes | no | no |
+//! | permutation tests of effects | yes | yes, within one hypercube | no |
+//! | Student's t over replicates ([`replicate_mean`](crate::statistics::replicate_mean)) | yes | yes | yes |
 //!
 //! The estimates of a Latin hypercube have at most n / (n - 1) times the variance of independent
 //! ones, those of a scrambled net at most a constant times it (Owen 1997, SIAM Journal on Numerical
@@ -35,12 +34,10 @@
 //!
 //! [`Address::unit`]: crate::model::rng::Address::unit
 
-mod grid;
 mod latin_hypercube;
 mod permutation;
 mod sobol;
 
-pub use grid::{factorial, factorial_runs, one_at_a_time, one_at_a_time_runs};
 pub use latin_hypercube::latin_hypercube;
 pub use sobol::sobol;
 
@@ -53,21 +50,11 @@ pub enum Design {
     LatinHypercube,
     /// One or several scramblings of a Sobol sequence.
     Sobol,
-    /// All combinations of levels.
-    Factorial,
-    /// One quantity varied at a time.
-    OneAtATime,
 }
 
 impl Design {
     /// All designs.
-    pub const ALL: [Self; 5] = [
-        Self::Independent,
-        Self::LatinHypercube,
-        Self::Sobol,
-        Self::Factorial,
-        Self::OneAtATime,
-    ];
+    pub const ALL: [Self; 3] = [Self::Independent, Self::LatinHypercube, Self::Sobol];
 }
 
 /// Kinds of statistics, by what they take for granted of the episodes.
@@ -114,7 +101,6 @@ pub fn allows(design: Design, method: Method) -> bool {
             Method::Estimate | Method::EffectTest | Method::Replicates
         ),
         Design::Sobol => matches!(method, Method::Estimate | Method::Replicates),
-        Design::Factorial | Design::OneAtATime => false,
     }
 }
 

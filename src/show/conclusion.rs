@@ -2,8 +2,9 @@
 
 use super::line;
 use super::style::{heading, judged};
-use urts_mc::comparison::RequirementResult;
+use urts_mc::comparison::{HOW_SURE, RequirementResult};
 use urts_mc::run::Findings;
+use urts_mc::words::rounded_up;
 
 /// Who does better, in a sentence each.
 pub(super) fn in_short(findings: &Findings) -> String {
@@ -11,8 +12,8 @@ pub(super) fn in_short(findings: &Findings) -> String {
     let sentences = &findings.manifest.verdict;
     if !sentences.is_empty() {
         let sure = match findings.manifest.episodes {
-            1 => "",
-            _ => " (each statement with 95 % confidence)",
+            1 => String::new(),
+            _ => format!(" ({HOW_SURE})"),
         };
         line(&mut text, &format!("\n{}{sure}", heading("in short")));
     }
@@ -40,10 +41,10 @@ pub(super) fn requirements(results: &[RequirementResult]) -> String {
         line(
             &mut text,
             &format!(
-                "  {}  require[{index}]  {:<width$}  below {:.4}, required {:.4} ({} of {} failed)",
+                "  {}  require[{index}]  {:<width$}  below {}, required {:.4} ({} of {} failed)",
                 judged(result.is_met(), "met  ", "UNMET"),
                 result.subject(),
-                result.upper_95,
+                rounded_up(result.upper_95, 4),
                 result.limit,
                 result.failed,
                 result.n

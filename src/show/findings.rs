@@ -10,12 +10,11 @@ use urts_mc::caveats::caveats;
 use urts_mc::comparison::{FailureRate, Measured, PairedComparison, Ratio};
 use urts_mc::conditions::title;
 use urts_mc::cross_check::CrossCheck;
-use urts_mc::flight::{Engine, Leg};
 use urts_mc::ranking::RankedCondition;
 use urts_mc::run::Findings;
 use urts_mc::statistics::Interval;
 use urts_mc::synthesis::ChannelRole;
-use urts_mc::words::digits;
+use urts_mc::words::{digits, rounded_up};
 
 /// Channels that are shown one by one.
 const MOST_CHANNELS: usize = 6;
@@ -30,7 +29,8 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> 
     let mut text = String::new();
     let manifest = &findings.manifest;
     let precision = format!("{:?}", manifest.precision).to_lowercase();
-    let engines: Vec<String> = manifest.legs.iter().map(engine).collect();
+    let engines = manifest.legs.iter().map(|leg| leg.engine.to_string());
+    let engines: Vec<String> = engines.collect();
     line(
         &mut text,
         &format!(
@@ -88,9 +88,10 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> 
                         100.0 * interval.lower,
                         100.0 * interval.upper
                     )),
-                failures
-                    .upper_95
-                    .map_or("-".to_string(), |upper| format!("{:.2}%", 100.0 * upper)),
+                failures.upper_95.map_or("-".to_string(), |upper| format!(
+                    "{}%",
+                    rounded_up(100.0 * upper, 2)
+                )),
                 if failures.diverged > 0 {
                     format!("  ({} diverged)", failures.diverged)
                 } else {
@@ -224,17 +225,6 @@ fn counted(episodes: u32) -> String {
     }
 }
 
-/// What flew some episodes.
-fn engine(leg: &Leg) -> String {
-    match &leg.engine {
-        Engine::Cpu { simd, threads } => {
-            let lanes = simd.map_or(String::new(), |simd| format!(" ({simd:?})").to_lowercase());
-            format!("the CPU{lanes}, {threads} threads")
-        }
-        Engine::Gpu { adapter, .. } => format!("{} ({})", adapter.name, adapter.driver),
-    }
-}
-
 fn cross_check(check: &CrossCheck, controllers: usize) -> String {
     let pairs = check.episodes.len() * controllers;
     let differences = if check.compared == 0 {
@@ -348,11 +338,7 @@ fn ratio_text(ratio: &Ratio) -> String {
     let wins = ratio.win_rate.map_or(String::new(), |rate| {
         format!("  wins {:>5.1} %", 100.0 * rate.value)
     });
-    let over_replicates = ratio.over_replicates.map(|found| Measured {
-        value: found.value,
-        interval: Some(found.interval),
-    });
-    match over_replicates.or(ratio.log_ratio) {
+    match ratio.known() {
         Some(Measured { value, interval }) => {
             // Of a few episodes every ratio may be the median.
             let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
@@ -384,7 +370,7 @@ fn failures_text(comparison: &PairedComparison) -> String {
                 100.0 * interval.upper
             )
         });
-        format!("{:+.2} %{interval}, ", 100.0 * difference.value)
+        format!("{:+.2} points{interval}, ", 100.0 * difference.value)
     });
     format!(
         "{difference}only {} {}, only {} {}, both {}{}",

@@ -32,6 +32,12 @@ pub(crate) fn findings_json(findings: &Findings) -> Value {
             if rates.last() != Some(&failures) { rates.push(failures); }
             rates
         }).into_iter().map(rate).collect::<Vec<_>>(),
+        "errors": findings.summary.iter().map(|row| json!({
+            "controller": row.failures.controller, "stratum": *row.failures.stratum, "metric": row.metric, "group": row.group,
+            "quantiles": row.quantiles.iter().map(|(share, value, interval_95)| json!({
+                "share": share, "value": value.and_then(finite), "interval_95": interval_95.map(interval),
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "comparisons": findings.comparisons.iter().map(|comparison| json!({
             "a": comparison.a, "b": comparison.b, "stratum": *comparison.stratum,
             "both_failed": comparison.failures.both, "only_a_failed": comparison.failures.only_a,
@@ -61,6 +67,7 @@ pub(crate) fn findings_json(findings: &Findings) -> Value {
             "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
             "largest_error_over_limit": finite(worst.excess), "failed_at_s": worst.failed_at_s,
             "agent": worst.agent, "channel": *worst.channel,
+            "stratum": worst.stratum.as_deref(), "faults": worst.faults.iter().map(|name| &**name).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "requirements": findings.manifest.requirements.iter().map(|result| json!({
             "controller": result.controller, "stratum": result.stratum, "limit": result.limit, "upper_95": result.upper_95,

@@ -53,7 +53,12 @@ pub(crate) fn replay(
                     _ => "",
                 };
                 let time = failed_at_s(replay, outcome);
-                let at = time.map_or(String::new(), |time| format!(" at {time:.3} s"));
+                // What diverges has failed before it left the numbers, if there is a limit.
+                let first = match failed {
+                    Status::Diverged => ", failed",
+                    Status::Ok | Status::Exceeded => "",
+                };
+                let at = time.map_or(String::new(), |time| format!("{first} at {time:.3} s"));
                 format!("  {}{limit}{at}", bad(failed.word()))
             }
         };

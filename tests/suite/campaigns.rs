@@ -1,9 +1,11 @@
 //! Every shipped campaign, and what the paper and the specification expect of the two big ones.
 
 use crate::common::{altered, campaign, fly, shipped_campaigns, tables};
+use polars::prelude::DataType;
 use urts_mc::backend::cpu::Precision;
-use urts_mc::campaign::{Campaign, Distribution, DisturbanceKind, FaultKind, FaultTarget};
+use urts_mc::campaign::{Campaign, Distribution, FaultKind, FaultTarget};
 use urts_mc::comparison::{compare, summarise};
+use urts_mc::draw::draw;
 use urts_mc::gains::GainSet;
 use urts_mc::tables::Status;
 
@@ -325,14 +327,75 @@ fn every_kind_of_fault_and_disturbance_has_a_line_in_a_shipped_campaign() {
             );
         }
     }
-    for kind in [
-        DisturbanceKind::Sine,
-        DisturbanceKind::Constant,
-        DisturbanceKind::Gust1Cosine,
-        DisturbanceKind::Dryden,
-        DisturbanceKind::GroundReaction,
-    ] {
+    // The schema knows every kind, whoever adds one.
+    let schema = Campaign::schema();
+    let of_schema = |name: &str| -> Vec<String> {
+        let kinds = schema["$defs"][name]["oneOf"].as_array().unwrap();
+        kinds
+            .iter()
+            .map(|kind| kind["const"].as_str().unwrap().to_string())
+            .collect()
+    };
+    assert_eq!(of_schema("FaultKind").len(), FaultKind::ALL.len());
+    let kinds = of_schema("DisturbanceKind");
+    assert!(kinds.len() >= 6, "{kinds:?}");
+    for kind in kinds {
         let mut disturbances = all.iter().flat_map(|campaign| &campaign.disturbances);
-        assert!(disturbances.any(|one| one.kind == kind), "{}", kind.name());
+        assert!(disturbances.any(|one| one.kind.name() == kind), "{kind}");
     }
+}
+
+#[test]
+fn the_tables_hold_what_was_flown_the_channel_that_jammed_and_delays_in_whole_steps() {
+    let fault = |kind: &str, rest: &str| {
+        format!(
+            "[[fault]]\ntarget = \"actuator\"\nkind = \"{kind}\"\nchannels = \"one\"\nonset_s = 1.0\n{rest}\n"
+        )
+    };
+    let faults = fault("stuck", "") + &fault("delay", "delay_s = { uniform = [0.002, 0.012] }");
+    let campaign = altered("smoke", &[("[verdict]", &format!("{faults}[verdict]"))]);
+    let step_s = campaign.time.step_s;
+    let frame = tables(&campaign, Precision::F32)
+        .episodes
+        .to_frame()
+        .unwrap();
+    let stuck = campaign.faults.len() - 2;
+    let jammed = frame.column(&format!("fault{stuck}_channel")).unwrap();
+    let jammed = jammed.cast(&DataType::String).unwrap();
+    let (controllers, team) = (campaign.controllers.len(), campaign.team);
+    let mut met = Vec::new();
+    for row in 0..frame.height() {
+        let (episode, agent) = (row / (controllers * team), row % team);
+        let drawn = &draw(&campaign, u32::try_from(episode).unwrap()).agents[agent];
+        let channel = drawn.faults[stuck]
+            .strikes
+            .iter()
+            .position(|own| *own)
+            .unwrap();
+        let name = jammed.str().unwrap().get(row).unwrap();
+        assert_eq!(name, &*campaign.channels()[channel]);
+        met.push(name.to_string());
+
+        let late = drawn.faults[stuck + 1]
+            .strikes
+            .iter()
+            .position(|own| *own)
+            .unwrap();
+        let column = format!("fault{}_delay_s_{}", stuck + 1, campaign.channels()[late]);
+        let flown_s = frame
+            .column(&column)
+            .unwrap()
+            .f64()
+            .unwrap()
+            .get(row)
+            .unwrap();
+        let asked_s = drawn.faults[stuck + 1].parameters[0][late];
+        // The nearest whole step, which is what flies, and not what was drawn.
+        let steps = flown_s / step_s;
+        assert!((steps - steps.round()).abs() < 1e-9, "{flown_s}");
+        assert!((flown_s - asked_s).abs() <= step_s / 2.0 + 1e-12 && flown_s != asked_s);
+    }
+    met.sort();
+    met.dedup();
+    assert!(met.len() > 3, "{met:?}");
 }

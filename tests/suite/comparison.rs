@@ -371,10 +371,19 @@ fn a_single_controller_has_a_verdict_of_its_own() {
     campaign.controllers.truncate(1);
     let scores = scores(&campaign, |_, _| (Status::Ok, 0.01));
     let said = verdict(&summarise(&campaign, &scores), &[]);
-    // 1 - 0.05^(1/30) = 0.0950.
+    // 1 - 0.05^(1/30) = 0.09503, and a bound is never rounded down.
     assert_eq!(
         said,
-        ["ftc fails in 0 of 30 episodes: its failure rate is below 9.50 %"]
+        ["ftc fails in 0 of 30 episodes: with 95 % confidence its failure rate is below 9.51 %"]
+    );
+    let scores = self::scores(&campaign, |_, _| (Status::Exceeded, 0.01));
+    let said = verdict(&summarise(&campaign, &scores), &[]);
+    // Wilson's interval of 30 of 30 begins at 30 / (30 + 1.96^2) = 0.8865.
+    assert_eq!(
+        said,
+        [
+            "ftc fails in 30 of 30 episodes: with 95 % confidence its failure rate is between 88.65 and 100.00 %"
+        ]
     );
 }
 
@@ -407,6 +416,35 @@ fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_f
     assert_eq!((first.agent, &*first.channel), (team - 1, "y"));
     assert_eq!(first.failed_at_s, Some(305.0 * campaign.time.step_s));
     assert!(first.excess.is_infinite() && of_first[3].failed_at_s.is_none());
+}
+
+#[test]
+fn four_episodes_do_not_make_a_verdict() {
+    // Four failures against none in four pairs: the interval excludes 0, McNemar's mid-p of 0.0625 does not.
+    let mut campaign = campaign(6);
+    (campaign.episodes, campaign.strata) = (4, Strata::default());
+    let scores = scores(&campaign, |controller, episode| {
+        let fails = controller == 1 && episode < 4;
+        (if fails { Status::Exceeded } else { Status::Ok }, 0.01)
+    });
+    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    assert!(
+        said.starts_with("4 episodes do not tell ftc and pid apart: "),
+        "{said}"
+    );
+    assert!(said.contains("no clear difference"), "{said}");
+}
+
+#[test]
+fn two_flights_that_diverge_have_no_errors_to_compare() {
+    let mut campaign = campaign(3);
+    (campaign.episodes, campaign.strata) = (1, Strata::default());
+    let scores = scores(&campaign, |_, _| (Status::Diverged, f64::NAN));
+    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    assert!(
+        said.ends_with("both fail; both diverge, so there are no errors to compare"),
+        "{said}"
+    );
 }
 
 #[test]

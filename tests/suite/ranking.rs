@@ -66,6 +66,21 @@ fn what_drives_the_error_is_found_and_what_does_not_is_not() {
 }
 
 #[test]
+fn what_drives_the_error_is_found_among_many_conditions_too() {
+    // A screening with well over a hundred conditions: the largest number of permutations grows with them.
+    let (campaign, scores) = flown("uav-faults", 180);
+    let ranking = rank(&campaign, &scores);
+    let mut found = sure(&ranking, "rmse", "pid");
+    assert!(found.any(|ranked| ranked.condition == "kappa"));
+    let of_target = ranking.iter().filter(|own| {
+        own.target.kind == "rmse"
+            && own.target.controller == "pid"
+            && own.target.group == Some("position")
+    });
+    assert!(of_target.count() > 100);
+}
+
+#[test]
 fn outcomes_of_other_episodes_have_no_cause_in_these() {
     let (campaign, mut scores) = flown("uav-paper", 192);
     // Outcomes in another order belong to no condition: what is sure then is chance, 15 targets at 5 %.

@@ -1,9 +1,6 @@
 //! Designs: exact balance, independence of dimensions, and what they gain and may conclude.
 
-use urts_mc::sampling::{
-    Design, Method, allows, factorial, factorial_runs, latin_hypercube, one_at_a_time,
-    one_at_a_time_runs, sobol,
-};
+use urts_mc::sampling::{Design, Method, allows, latin_hypercube, sobol};
 use urts_mc::statistics::{Interval, replicate_mean, wilson};
 
 const SEED: u64 = 2026;
@@ -381,51 +378,6 @@ fn replicates_give_an_interval_that_covers_and_is_narrower_than_independent_epis
 }
 
 #[test]
-fn factorial_designs_visit_every_combination_once() {
-    let levels = [3, 1, 4];
-    assert_eq!(factorial_runs(&levels), Some(12));
-    let mut seen: Vec<[u64; 3]> = (0..12)
-        .map(|run| [0, 1, 2].map(|d| (factorial(&levels, d, run) * 120.0).round() as u64))
-        .collect();
-    // The middles of thirds and of quarters, in 120ths.
-    assert_eq!(
-        seen[..4],
-        [[20, 60, 15], [60, 60, 15], [100, 60, 15], [20, 60, 45]]
-    );
-    seen.sort_unstable();
-    seen.dedup();
-    assert_eq!(seen.len(), 12);
-    assert_eq!(factorial(&levels, 0, 12), factorial(&levels, 0, 0));
-    assert_eq!(factorial(&levels, 3, 5), 0.5);
-    assert_eq!(factorial_runs(&[u32::MAX; 3]), None);
-    assert_eq!(
-        factorial(&[u32::MAX; 4], 3, u64::MAX),
-        0.5 / f64::from(u32::MAX)
-    );
-    assert_eq!(
-        (factorial_runs(&[]), factorial_runs(&[0, 2])),
-        (Some(1), Some(2))
-    );
-}
-
-#[test]
-fn one_at_a_time_designs_leave_all_but_one_dimension_at_its_median() {
-    assert_eq!(one_at_a_time_runs(4, 3), 13);
-    for run in 0..13 {
-        let point = [0, 1, 2].map(|d| one_at_a_time(4, d, run));
-        let moved: Vec<usize> = (0..3).filter(|&d| point[d] != 0.5).collect();
-        match run.checked_sub(1) {
-            None => assert!(moved.is_empty()),
-            Some(run) => {
-                assert_eq!(moved, [(run / 4) as usize]);
-                assert_eq!(point[moved[0]], (run % 4) as f64 / 4.0 + 0.125);
-            }
-        }
-    }
-    assert_eq!(one_at_a_time(0, 0, 1), 0.5);
-}
-
-#[test]
 fn only_independent_episodes_allow_what_counts_on_independence() {
     let allowed = |design| Method::ALL.map(|method| allows(design, method));
     assert_eq!(allowed(Design::Independent), [true; 7]);
@@ -443,8 +395,5 @@ fn only_independent_episodes_allow_what_counts_on_independence() {
     assert!(!allows(Design::Sobol, Method::EffectTest));
     for design in [Design::LatinHypercube, Design::Sobol] {
         assert!(allows(design, Method::Replicates) && allows(design, Method::Estimate));
-    }
-    for design in [Design::Factorial, Design::OneAtATime] {
-        assert_eq!(allowed(design), [false; 7]);
     }
 }

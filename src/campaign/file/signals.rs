@@ -99,10 +99,11 @@ pub struct FaultFile {
     pub duration_s: Option<Value>,
     /// Time in which it comes, in equal parts, s (default 0: at once).
     pub ramp_s: Option<Value>,
-    /// Loss: lost share of the command; bias, hard-over, false data: N, N m, m or rad; scale, mass, inertia: share; interference:
-    /// share of the others' commands.
+    /// Loss: lost share of the command; bias, hard-over, false data: N or N m of a command, m/s or rad/s of a measurement (which
+    /// shows the rate too large by it, and a UAV's position by a tenth as many m or rad); scale, mass, inertia: share;
+    /// interference: share of the others' commands.
     pub magnitude: Option<Value>,
-    /// Smoothed square, oscillatory, outlier: amplitude, N, N m, m or rad.
+    /// Smoothed square, oscillatory, outlier: amplitude, N or N m of a command, m/s or rad/s of a measurement.
     pub amplitude: Option<Value>,
     /// Oscillatory: angular frequency, rad/s.
     pub frequency_rad_s: Option<Value>,
@@ -112,7 +113,7 @@ pub struct FaultFile {
     pub smoothing: Option<Value>,
     /// Smoothed square, oscillatory: phase at t = 0, rad (default 0).
     pub phase_rad: Option<Value>,
-    /// Noise: standard deviation, m or rad.
+    /// Noise: standard deviation, m/s or rad/s.
     pub std: Option<Value>,
     /// Drift, rate limit: change per second.
     pub rate: Option<Value>,

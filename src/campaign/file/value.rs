@@ -1,6 +1,7 @@
 //! Values that have several forms, read by hand: serde's untagged enums would hide what is wrong with a value, and its
 //! structs would take a list for a table.
 
+use crate::lists::exact;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -35,8 +36,10 @@ pub enum Value {
 #[serde(deny_unknown_fields)]
 pub struct DistributionFile {
     /// [low, high]
+    #[serde(default, deserialize_with = "exact")]
     pub uniform: Option<[f64; 2]>,
     /// [low, high], both positive; uniform in the logarithm.
+    #[serde(default, deserialize_with = "exact")]
     pub log_uniform: Option<[f64; 2]>,
     /// Normal.
     #[serde(default, deserialize_with = "some_table")]

@@ -10,8 +10,6 @@ use crate::words::sentence;
 
 /// Room around the values that are no peaks, in units of their range.
 const ROOM: f64 = 0.6;
-/// The channel along which thrust acts.
-const THRUST: usize = 2;
 
 /// What is shown of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,8 +115,8 @@ pub(super) fn panel(
         };
         let mut curve = scene.curve(flight, at, pick);
         if ink == Ink::Truth && quantity == Quantity::State {
-            let until_s = scene.until_s(flight, agent);
-            curve.retain(|&(t_s, _)| t_s <= until_s);
+            let left_s = scene.left_s(flight, agent);
+            curve.retain(|&(t_s, _)| t_s < left_s);
         }
         let shown = scene.shown(flight, agent, |k| {
             curve.get(k).is_some_and(|point| !frame.is_near(point.1))
@@ -204,9 +202,8 @@ fn limits(scene: &Scene<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
     match (&scene.campaign.agent, quantity) {
         (_, quantity) if quantity != Quantity::Command => Vec::new(),
         (Agent::Uav(uav), _) if uav.actuation == ActuationKind::Thrust => match channel {
-            THRUST => vec![0.0, uav.max_thrust_n],
             FIRST_ATTITUDE.. => both(uav.max_torque_n_m),
-            // The force demanded has no limit of its own.
+            // The force demanded has no limit of its own: the thrust has, which is along the body axis.
             _ => Vec::new(),
         },
         (Agent::Biped(biped), _) if biped.actuation == ActuationKind::Limited => {
@@ -279,7 +276,9 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
         Quantity::Command => {
             add("The command that acts, after limits and faults.");
             if scene.campaign.agent.actuation() == ActuationKind::Thrust {
-                add("z is the thrust along the body axis, x and y are the force demanded.");
+                add(
+                    "x, y and z are the force demanded, of which the thrust along the body axis gives what it can.",
+                );
             }
         }
         Quantity::Error | Quantity::State => {}

@@ -103,7 +103,7 @@ fn panel(
         let flown = path(agent, |shown| shown.x, f64::INFINITY);
         let first = flown.first().copied();
         marks.push(Mark::Line(flown, flight.ink(), Stroke::Solid));
-        let reference = path(agent, |shown| shown.r, scene.until_s(flight, agent));
+        let reference = path(agent, |shown| shown.r, scene.left_s(flight, agent));
         marks.push(Mark::Line(reference, Ink::Truth, Stroke::Dashed));
         marks.push(Mark::Dots(first.into_iter().collect(), flight.ink()));
     }

@@ -95,10 +95,23 @@ impl<'a> Scene<'a> {
         Some(f64::from(step) * self.campaign.time.step_s)
     }
 
-    /// Until when what an agent showed means something, s: one that left the numbers stands still at any place afterwards.
+    /// Until when what an agent did belongs into a frame, s: one that diverges leaves every frame after it failed.
     pub(super) fn until_s(&self, flight: &Flight<'_>, agent: usize) -> f64 {
         match flight.outcomes[agent].diverged {
             true => self.failed_at_s(flight, agent).unwrap_or(f64::INFINITY),
+            false => f64::INFINITY,
+        }
+    }
+
+    /// When an agent left the numbers, s; after that its reference stands still, too.
+    pub(super) fn left_s(&self, flight: &Flight<'_>, agent: usize) -> f64 {
+        let gone = |snapshot: &&Snapshot| {
+            let channels = snapshot.agents.get(agent).into_iter().flatten();
+            channels.into_iter().any(|shown| !shown.x.is_finite())
+        };
+        let first = flight.snapshots.iter().find(gone);
+        match flight.outcomes[agent].diverged {
+            true => first.map_or(f64::INFINITY, |snapshot| self.time_s(snapshot)),
             false => f64::INFINITY,
         }
     }

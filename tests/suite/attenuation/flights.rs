@@ -182,6 +182,28 @@ fn noise_and_the_grounds_reaction_are_not_smooth() {
 }
 
 #[test]
+fn turbulence_leaves_the_theorem_to_the_attitude_that_it_does_not_touch() {
+    let wind = "[[disturbance]]\nkind = \"dryden\"\nintensity = \"light\"\naltitude_m = 30.0\nairspeed_m_s = 10.0\ngain_n_s_m = 0.5\n\n[verdict]";
+    let found = found(&altered("scenario-a", &[("[verdict]", wind)]), "ftc", 0);
+    let (kind, entry) = ("dryden", 1);
+    for channels in &found {
+        let (position, attitude) = channels.split_at(3);
+        let rough = NotApplicable::RoughDisturbance { entry, kind };
+        assert!(
+            position
+                .iter()
+                .all(|own| own.as_ref().err() == Some(&rough)),
+            "{found:?}"
+        );
+        assert!(
+            attitude
+                .iter()
+                .all(|own| own.as_ref().is_ok_and(Attenuation::holds))
+        );
+    }
+}
+
+#[test]
 fn limits_that_cut_are_seen() {
     let changes = [
         ("team = 4", "team = 4\nactuation = \"limited\""),

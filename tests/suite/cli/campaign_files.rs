@@ -75,6 +75,9 @@ channels = "one"  => channels = 3        :: channels = 3 ~ a list of channel num
 channels = "one"  => channels = ["z"]    :: "z" ~ expected a whole number
 probability = 0.25 => probability = { uniform = [0, 1] } :: probability ~ a table, expected a number
 "full"            => "full"\ninertia_kg_m2 = [1.0, 1.0] :: inertia_kg_m2 ~ expected a list of length 3
+"full"            => "full"\ninertia_kg_m2 = [1.0, 1.0, 1.0, 9.0] :: inertia_kg_m2 ~ 4 ~ expected a list of length 3
+mass_scale = { uniform = [0.8, 1.2] } => mass_scale = { uniform = [0.8, 1.0, 1.2] } :: mass_scale ~ 3 ~ expected a list of length 2
+mass_scale = { uniform = [0.8, 1.2] } => mass_scale = { log_uniform = [0.8, 1.0, 1.2] } :: mass_scale ~ 3 ~ expected a list of length 2
 controllers = ["ftc", "pid", "pid-tuned"] => controllers = "ftc" :: "ftc" ~ expected a list
 [[disturbance]]   => [disturbance]       :: [disturbance] ~ expected a list of tables ~ [[double brackets]]
 [coupling]        => [[coupling]]        :: line 42 ~ a list, expected a table of keys and values

@@ -77,6 +77,22 @@ fn completions_of_every_shell_know_every_command_and_bash_accepts_its_own() {
             std::io::Write::write_all(&mut input, script.as_bytes()).unwrap();
             drop(input);
             assert!(bash.wait().unwrap().success());
+            // What a user who presses the tabulator is offered.
+            for (words, offered) in [
+                ("run c.toml --ba", "--backend"),
+                ("run c.toml --backend g", "gpu"),
+                ("replay out --contr", "--controller"),
+            ] {
+                let count = words.split(' ').count();
+                let press = format!(
+                    "{script}\nCOMP_WORDS=(urts-mc {words}); COMP_CWORD={count}\n\
+                     _urts__mc urts-mc \"${{COMP_WORDS[$COMP_CWORD]}}\" \"${{COMP_WORDS[$((COMP_CWORD-1))]}}\"\n\
+                     echo \"${{COMPREPLY[@]}}\"\n"
+                );
+                let told = Command::new("bash").args(["-c", &press]).output().unwrap();
+                let told = String::from_utf8_lossy(&told.stdout).into_owned();
+                assert_eq!(told.trim(), offered, "{words}");
+            }
         }
     }
     place.refuses(&["completions", "tcsh"], 2, &["'tcsh'", "bash", "fish"]);

@@ -121,10 +121,10 @@ fn a_screening_says_which_fault_hurts_which_controller_most() {
         "failure rates by stratum",
         "\n  none ",
         "\n  mixed ",
-        "which fault hurts most, against the stratum \"none\"",
-        "ftc          fails with none of the faults (at least 16 episodes each)",
-        "pid          fails most often with \"sensor smoothed-square\": ",
-        "RMS error, position, grows most with \"sensor smoothed-square\": ",
+        "which stratum hurts most, change [95 %]",
+        "  ftc fails with none of the faults (at least 16 episodes each)",
+        "  pid fails most often with \"sensor smoothed-square\": ",
+        "  pid: RMS error, position, grows most with \"sensor smoothed-square\": ",
     ] {
         assert!(text.contains(word), "{word:?} is missing from: {text}");
     }
@@ -140,7 +140,11 @@ fn a_screening_says_which_fault_hurts_which_controller_most() {
     let more = &square["failure_rate_difference"];
     let percent = |value: &Value| format!("{:+.1}", 100.0 * value.as_f64().unwrap());
     let (value, ends) = (percent(&more["value"]), &more["interval_95"]);
-    let shown = format!("{value} % [{}, {}]", percent(&ends[0]), percent(&ends[1]));
+    let shown = format!(
+        "{value} points [{}, {}]",
+        percent(&ends[0]),
+        percent(&ends[1])
+    );
     assert!(text.contains(&shown), "{shown:?} is missing from: {text}");
     let row = &place.rows("out/screening.csv")[3];
     assert_eq!(

@@ -1,6 +1,7 @@
 //! Colours, quiet commands, and JSON.
 
 use super::{Ended, Place};
+use urts_mc::comparison::HOW_SURE;
 
 const ESCAPE: char = '\x1b';
 /// A campaign with a requirement that holds, one that does not, and the other half of an unequal comparison.
@@ -92,9 +93,7 @@ fn a_quiet_command_prints_nothing_but_errors_and_what_json_asks_for() {
 fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
     let place = Place::smoke(&[("[verdict]", REQUIRE), ("episodes = 3", "episodes = 16")]);
     let said = place.program(&["run", "c.toml", "--out", "out"]).stdout;
-    let end = said
-        .split("\nin short (each statement with 95 % confidence)\n")
-        .nth(1);
+    let end = said.split(&format!("\nin short ({HOW_SURE})\n")).nth(1);
     let lines: Vec<&str> = end.unwrap().lines().collect();
     assert!(lines[0].starts_with(
         "  ftc does better than pid: it fails in 0.0 % of the episodes, the other in "
@@ -104,10 +103,10 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
         lines[3],
         "requirements: the failure rate with 95 % confidence"
     );
-    // 1 - 0.05^(1/16) = 0.1707.
+    // 1 - 0.05^(1/16) = 0.17074, and a bound is never rounded down.
     assert_eq!(
         lines[4],
-        "  met    require[0]  ftc  below 0.1707, required 0.6400 (0 of 16 failed)"
+        "  met    require[0]  ftc  below 0.1708, required 0.6400 (0 of 16 failed)"
     );
     assert!(
         lines[5].starts_with("  UNMET  require[1]  pid  below "),

@@ -61,6 +61,7 @@ fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Fou
             "--disable-gpu",
             "--disable-dev-shm-usage",
             "--disable-extensions",
+            "--enable-logging=stderr",
         ])
         .args([
             "--disable-background-networking",
@@ -193,6 +194,12 @@ fn cut_labels_overlaps_and_requests_are_noticed() {
             }
         }
     }
+    let failing = "<script>console.error('lost')</script>";
+    let found = open(&browser, &page, 390, false, failing);
+    assert!(
+        found.stumbles.iter().any(|told| told.contains("lost")),
+        "{found:#?}"
+    );
     let found = open(&browser, &page, 390, false, &asking);
     assert!(!found.requests.is_empty(), "{found:#?}");
 }
