@@ -27,7 +27,7 @@ use urts_mc::flight::{Backend, Settings};
 use urts_mc::gains::GainSet;
 use urts_mc::junit::{junit, junit_of_error};
 use urts_mc::output::{OutputDir, OutputError, OutputFile, is_of_a_run};
-use urts_mc::paper::paper;
+use urts_mc::paper::{claim_dir, paper};
 use urts_mc::replay::replay;
 use urts_mc::report::{report, trace};
 use urts_mc::run::{Extras, Findings, RunError, run};
@@ -49,8 +49,8 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
             print(&show::report(&run))?;
             Ok(Code::Done)
         }
-        Command::Paper { out } => {
-            let claims = paper(&OutputDir::existing(&out))?;
+        Command::Paper { out, overwrite } => {
+            let claims = paper(&claim_dir(&out, overwrite)?)?;
             print(&show::paper(&claims, &out))?;
             Ok(Code::Done)
         }
@@ -76,7 +76,7 @@ impl Overrides {
 }
 
 fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
-    let campaign = arguments.overrides.load().map_err(|refused| {
+    let campaign = arguments.overrides.load().inspect_err(|refused| {
         // The file of an earlier run must not say that this one passed.
         let out = arguments.out.clone().unwrap_or_default();
         let file = arguments.junit_file(&out).ok().flatten();
@@ -86,7 +86,6 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
             // Of two errors the campaign's is told.
             let _ = text.map(|text| file.write(text.as_bytes()));
         }
-        refused
     })?;
     let settings = arguments.settings()?;
     let path = arguments

@@ -5,6 +5,7 @@ use urts_mc::backend::gpu::GpuError;
 use urts_mc::flight::FlightError;
 use urts_mc::gains::GainsError;
 use urts_mc::output::OutputError;
+use urts_mc::paper::PaperError;
 use urts_mc::replay::ReplayError;
 use urts_mc::report::ReportError;
 use urts_mc::run::RunError;
@@ -102,6 +103,13 @@ fn code_of(error: &anyhow::Error) -> Code {
         Some(ReplayError::Run(error)) => return of_output(error),
         Some(ReplayError::Gains(error)) => return of_gains(error),
         Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
+        None => {}
+    }
+    match error.downcast_ref() {
+        Some(PaperError::Output(error)) => return of_output(error),
+        Some(PaperError::Gains(error)) => return of_gains(error),
+        // Its campaigns are part of the program: no other input would help.
+        Some(PaperError::Campaign(_) | PaperError::Unsuited { .. }) => return Code::Other,
         None => {}
     }
     if let Some(error) = error.downcast_ref() {

@@ -5,24 +5,29 @@
 
 mod claims;
 mod figures;
+mod flights;
+mod measures;
 
-use crate::backend::cpu::{Cpu, Precision};
-use crate::campaign::{Campaign, CampaignError, FTC, PID};
-use crate::gains::{GainSet, GainsError};
-use crate::model::Shown;
-use crate::model::episode::Snapshot;
-use crate::output::{OutputDir, OutputError};
+pub use claims::{Claim, claims};
+pub use flights::Flights;
+
+use crate::campaign::CampaignError;
+use crate::gains::GainsError;
+use crate::output::{OutputDir, OutputError, OutputFile};
 use crate::report::document::{Block, Cell, Document, Grid, Section};
 use crate::report::markdown::markdown;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// The campaign of the UAVs.
 const UAVS: &str = include_str!("../campaigns/scenario-a.toml");
 /// The campaign of the robots.
 const ROBOTS: &str = include_str!("../campaigns/paper-robots.toml");
-/// Steps between two samples: 10 ms.
-const EVERY: u32 = 10;
+/// The text that lists figures and claims; it is written last.
+const README: &str = "README.md";
+/// Its title, by which a directory of these figures is known.
+const TITLE: &str = "The paper's figures and claims";
 
 /// Why the figures cannot be made.
 #[derive(Debug, Error)]
@@ -30,71 +35,74 @@ pub enum PaperError {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A campaign that is part of the program is not one.
+    /// A campaign is none.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
     /// Its gains cannot be had.
     #[error(transparent)]
     Gains(#[from] GainsError),
+    /// The claims cannot be asked of a campaign.
+    #[error(
+        "{}: the claims are about agents that meet one sine and one smoothed square wave on every sensor, the same on all channels; \
+         give it these",
+        path.display()
+    )]
+    Unsuited {
+        /// Where its text is from.
+        path: PathBuf,
+    },
 }
 
-/// A claim of the paper, and what was measured.
-#[derive(Debug, Clone)]
-pub struct Claim {
-    /// Where the paper says so.
-    pub place: &'static str,
-    /// What it says, in short.
-    pub claim: &'static str,
-    /// What was measured here.
-    pub measured: String,
-    /// Whether it holds; none where the flight does not decide.
-    pub holds: Option<bool>,
-}
-
-/// The first agent of a campaign under the FTC and under the PID.
-struct Flights {
-    campaign: Campaign,
-    ftc: Vec<Snapshot>,
-    pid: Vec<Snapshot>,
-}
-
-impl Flights {
-    fn of(text: &str, name: &str) -> Result<Self, PaperError> {
-        let mut campaign = Campaign::parse(text, Path::new(name))?;
-        campaign.controllers = [FTC, PID].map(Into::into).to_vec();
-        let gains = GainSet::obtain(&campaign)?;
-        let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
-        let (ftc, pid) = rayon::join(|| cpu.trace(0, 0, EVERY).1, || cpu.trace(0, 1, EVERY).1);
-        Ok(Self { campaign, ftc, pid })
+/// Claims a directory for the figures before any work is done. It may be absent, empty, or hold these figures already; anything
+/// else is refused unless `overwrite`.
+///
+/// # Errors
+/// If the directory holds something else or cannot be written. Nothing is left behind then.
+pub fn claim_dir(path: &Path, overwrite: bool) -> Result<OutputDir, OutputError> {
+    if path.exists() && !path.is_dir() {
+        return Err(OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source: std::io::ErrorKind::NotADirectory.into(),
+        });
     }
-
-    /// A quantity of a channel of the first agent over time, s.
-    fn series(
-        &self,
-        flight: &[Snapshot],
-        channel: usize,
-        pick: fn(&Shown) -> f64,
-    ) -> Vec<(f64, f64)> {
-        let of_channel = |snapshot: &Snapshot| {
-            let shown = snapshot.agents.first()?.get(channel)?;
-            Some((
-                f64::from(snapshot.step) * self.campaign.time.step_s,
-                pick(shown),
-            ))
-        };
-        flight.iter().filter_map(of_channel).collect()
+    if !overwrite && !is_ours(path) {
+        return Err(OutputError::Taken {
+            path: path.to_path_buf(),
+            what: "files that are not the paper's figures".into(),
+        });
     }
+    OutputFile::claim(&path.join(README))?;
+    Ok(OutputDir::existing(path))
+}
+
+/// Whether a directory holds nothing, or these figures: by the first line of its text, or, if it has none, by the names.
+fn is_ours(dir: &Path) -> bool {
+    let text = dir.join(README);
+    if text.exists() {
+        let title = format!("# {TITLE}");
+        return fs::read_to_string(text).is_ok_and(|text| text.lines().next() == Some(&*title));
+    }
+    let ours = |name: &str| {
+        let whole = name
+            .strip_prefix('.')
+            .and_then(|name| name.strip_suffix(".part"))
+            .unwrap_or(name);
+        whole == README || whole.starts_with("figure-") && whole.ends_with(".svg")
+    };
+    let entries = fs::read_dir(dir).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.all(|name| ours(&name))
 }
 
 /// Writes the figures as SVG and a README that lists them and the claims.
 ///
 /// # Errors
-/// If a file cannot be written.
+/// If a file cannot be written, or a campaign that is part of the program has become unfit.
 pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
-    let uavs = Flights::of(UAVS, "campaigns/scenario-a.toml")?;
-    let robots = Flights::of(ROBOTS, "campaigns/paper-robots.toml")?;
-    let claims = claims::all(&uavs, &robots);
-    let figures = figures::all(&uavs, &robots);
+    let uavs = Flights::fly(UAVS, Path::new("campaigns/scenario-a.toml"))?;
+    let robots = Flights::fly(ROBOTS, Path::new("campaigns/paper-robots.toml"))?;
+    let claims = claims(&uavs, &robots);
+    let figures = figures::all(&uavs, &robots)?;
     for figure in &figures {
         out.write(&figure.file, figure.svg.as_bytes())?;
     }
@@ -105,7 +113,7 @@ pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
             figure.title, figure.caption, figure.title, figure.file
         ));
     }
-    out.write("README.md", text.as_bytes())?;
+    out.write(README, text.as_bytes())?;
     Ok(claims)
 }
 
@@ -123,18 +131,18 @@ fn document(claims: &[Claim]) -> Document {
             Cell::text(claim.measured.clone()),
         ]);
     }
-    let holding = claims
-        .iter()
-        .filter(|claim| claim.holds == Some(true))
-        .count();
+    let count = |holds: Option<bool>| claims.iter().filter(|claim| claim.holds == holds).count();
     Document {
-        title: "The paper's figures and claims".into(),
+        title: TITLE.into(),
         subtitle: "Written by `urts-mc paper`: two deterministic flights in double precision, three UAVs (campaigns/scenario-a.toml) \
                    and four robots (campaigns/paper-robots.toml), of which the first is shown."
             .into(),
         lead: vec![format!(
-            "{holding} of {} claims of Section V hold in these flights.",
-            claims.len()
+            "{} of {} claims of Section V hold in these flights, {} do not, {} are not decided.",
+            count(Some(true)),
+            claims.len(),
+            count(Some(false)),
+            count(None),
         )],
         warnings: Vec::new(),
         sections: vec![Section::new(
@@ -142,8 +150,10 @@ fn document(claims: &[Claim]) -> Document {
             vec![
                 Block::Grid(grid),
                 Block::text(
-                    "The robot is a Unitree G1 (the paper's is not published), the amplitude of its sensor fault is ours, and the \
-                     observer of the paper's PID is not specified: it is the one of three states that its text suggests.",
+                    "The robot is a Unitree G1 (the paper's is not published), the amplitudes of the sensor faults are ours, the \
+                     initial errors have the size of the paper's but are the same on all channels, and the observer of the paper's \
+                     PID is not specified: it is the one of three states that its text suggests. What the paper calls brief, high, \
+                     much or insignificant has no number there: the bounds are ours, and stand with the measurements.",
                 ),
             ],
         )],

@@ -78,6 +78,9 @@ pub(crate) enum Command {
         /// Output directory
         #[arg(long, default_value = "reports/paper")]
         out: PathBuf,
+        /// Write even where the output directory holds something else
+        #[arg(long)]
+        overwrite: bool,
     },
     /// Tell how many episodes a claim about a failure rate needs
     #[command(after_help = examples(&[

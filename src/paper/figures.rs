@@ -1,9 +1,9 @@
 //! The counterparts of the paper's figures.
 
-use super::Flights;
+use super::PaperError;
+use super::flights::{Flights, Flown};
 use crate::campaign::Campaign;
 use crate::model::Shown;
-use crate::model::episode::Snapshot;
 use crate::reference::Reference;
 use crate::report::document::Key;
 use crate::report::panel::{Axis, Ink, Mark, Panel, Stroke};
@@ -29,7 +29,7 @@ struct View {
     what: &'static str,
     lines: &'static [Line],
     unit: fn(&str) -> String,
-    pid: bool,
+    flown: Flown,
 }
 
 /// A line of a figure.
@@ -96,7 +96,10 @@ const CONTROL: &[Line] = &[Line {
 }];
 
 /// All of them, in the paper's order.
-pub(super) fn all(uavs: &Flights, robots: &Flights) -> Vec<Figure> {
+///
+/// # Errors
+/// If the campaign of Figure 8 is none.
+pub(super) fn all(uavs: &Flights, robots: &Flights) -> Result<Vec<Figure>, PaperError> {
     let length: fn(&str) -> String = |unit| unit.to_string();
     let acceleration: fn(&str) -> String = |unit| format!("{unit}/s²");
     let rate: fn(&str) -> String = |unit| format!("{unit}/s");
@@ -107,26 +110,38 @@ pub(super) fn all(uavs: &Flights, robots: &Flights) -> Vec<Figure> {
             "N m".into()
         }
     };
-    let view = |number, what, lines, unit, pid| View {
+    let view = |number, what, lines, unit, flown| View {
         number,
         what,
         lines,
         unit,
-        pid,
+        flown,
     };
     let of_uavs = [
-        view(11, "states", STATES, length, false),
-        view(12, "actuator fault", ACTUATOR_FAULT, acceleration, false),
-        view(13, "sensor fault", SENSOR_FAULT, rate, false),
-        view(14, "control input", CONTROL, effort, false),
-        view(19, "states under the PID", STATES, length, true),
+        view(11, "states", STATES, length, Flown::Ftc),
+        view(
+            12,
+            "actuator fault",
+            ACTUATOR_FAULT,
+            acceleration,
+            Flown::Ftc,
+        ),
+        view(13, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
+        view(14, "control input", CONTROL, effort, Flown::Ftc),
+        view(19, "states under the PID", STATES, length, Flown::Pid),
     ];
     let of_robots = [
-        view(15, "states", STATES, length, false),
-        view(16, "actuator fault", ACTUATOR_FAULT, acceleration, false),
-        view(17, "sensor fault", SENSOR_FAULT, rate, false),
-        view(18, "control input", CONTROL, effort, false),
-        view(20, "states under the PID", STATES, length, true),
+        view(15, "states", STATES, length, Flown::Ftc),
+        view(
+            16,
+            "actuator fault",
+            ACTUATOR_FAULT,
+            acceleration,
+            Flown::Ftc,
+        ),
+        view(17, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
+        view(18, "control input", CONTROL, effort, Flown::Ftc),
+        view(20, "states under the PID", STATES, length, Flown::Pid),
     ];
     let mut figures: Vec<(u32, Figure)> = Vec::new();
     for view in &of_uavs {
@@ -135,29 +150,27 @@ pub(super) fn all(uavs: &Flights, robots: &Flights) -> Vec<Figure> {
     for view in &of_robots {
         figures.push((view.number, of_view(robots, view, "robot")));
     }
-    figures.extend(paths().map(|figure| (8, figure)));
+    figures.push((8, paths()?));
     figures.extend(walk(robots).map(|figure| (10, figure)));
     figures.sort_by_key(|(number, _)| *number);
-    figures.into_iter().map(|(_, figure)| figure).collect()
+    Ok(figures.into_iter().map(|(_, figure)| figure).collect())
 }
 
 fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
-    let flight: &[Snapshot] = if view.pid { &flights.pid } else { &flights.ftc };
     let campaign = &flights.campaign;
-    let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
     let panels: Vec<Panel> = campaign
         .channels()
         .iter()
         .enumerate()
         .map(|(channel, name)| {
             let marks = view.lines.iter().map(|line| {
-                let points = flights.series(flight, channel, line.pick);
-                Mark::Line(points, line.ink, line.stroke)
+                let points = flights.series(view.flown, channel, line.pick);
+                Mark::Line(points.0, line.ink, line.stroke)
             });
             Panel {
                 title: name.to_string(),
                 x: Axis {
-                    range: Some((0.0, end_s)),
+                    range: Some((0.0, flights.end_s())),
                     ..Axis::new("time, s")
                 },
                 y: Axis::new((view.unit)(campaign.unit(channel))),
@@ -172,8 +185,14 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
         .map(|line| Key::of(line.stroke, line.ink, line.name))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
-    let controller = if view.pid { "PID" } else { "FTC" };
-    let caption = format!("First {agent} of the team under the {controller}.");
+    let controller = match view.flown {
+        Flown::Pid => "PID",
+        Flown::Ftc | Flown::OnCourse => "FTC",
+    };
+    let mut caption = format!("First {agent} of the team under the {controller}.");
+    if let Some(lost_s) = flights.lost_s(view.flown) {
+        caption.push_str(&format!(" The flight diverges within {lost_s:.2} s."));
+    }
     Figure {
         file: format!("figure-{:02}.svg", view.number),
         svg: poster(&title, &caption, &panels, 3, &legend),
@@ -183,8 +202,8 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
 }
 
 /// Figure 8: the planned paths of UAVs, from above and from the side.
-fn paths() -> Option<Figure> {
-    let campaign = Campaign::parse(WAYPOINTS, Path::new("campaigns/waypoints.toml")).ok()?;
+fn paths() -> Result<Figure, PaperError> {
+    let campaign = Campaign::parse(WAYPOINTS, Path::new("campaigns/waypoints.toml"))?;
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
     let view = |title: &str, labels: [&str; 2], axes: [usize; 2]| {
         let of_agent = |agent: usize| {
@@ -216,7 +235,7 @@ fn paths() -> Option<Figure> {
     let caption =
         "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
             .to_string();
-    Some(Figure {
+    Ok(Figure {
         file: "figure-08.svg".into(),
         svg: poster(&title, &caption, &panels, 2, &legend),
         title,
