@@ -107,6 +107,8 @@ fn resume() {
         last_command = stored_number(MEMORY);
         last_measured = vec2(stored_number(MEMORY + 1u), stored_number(MEMORY + 2u));
         own.held_feedback = stored_number(MEMORY + 3u);
+        last_sent = stored_number(MEMORY + 4u);
+        last_arrived = stored_number(MEMORY + 5u);
     }
     if N_LEAKS > 0u {
         published[command_slot(own.agent)] = last_command;
@@ -147,6 +149,8 @@ fn keep() {
         store_number(MEMORY + 1u, last_measured.x);
         store_number(MEMORY + 2u, last_measured.y);
         store_number(MEMORY + 3u, own.held_feedback);
+        store_number(MEMORY + 4u, last_sent);
+        store_number(MEMORY + 5u, last_arrived);
     }
 }
 
@@ -168,7 +172,7 @@ fn start(
     }
     signals_begin(0u);
     signals_hold(0u, 0.0);
-    signals_evaluate(START);
+    signals_evaluate(0u, START);
     let integral = drawn_number(INTEGRAL);
     let error = drawn_number(ERROR);
     let rate = drawn_number(ERROR_RATE);

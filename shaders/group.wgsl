@@ -165,7 +165,7 @@ fn group_begin_step(step: u32) {
 
 fn group_hold(step: u32) {
     signals_hold(step, team_commands());
-    signals_evaluate(START);
+    signals_evaluate(step, START);
     metrics_before_fault(own.first_fault, step);
     own.next_change = min(next_change(step), select(NEVER, own.first_fault, own.first_fault > step));
 }
@@ -209,10 +209,10 @@ fn group_advance() {
         let middle = reference_at(half + 1u);
         end = reference_at(half + 2u);
         group_stage(0u, start, step >= setting.settle_step, step);
-        signals_evaluate(MIDDLE);
+        signals_evaluate(step, MIDDLE);
         group_stage(1u, middle, false, step);
         group_stage(2u, middle, false, step);
-        signals_evaluate(END);
+        signals_evaluate(step, END);
         group_stage(3u, end, false, step);
         group_end_step(step);
         if (step + 1u) % FLUSH_STEPS == 0u {

@@ -1,4 +1,5 @@
-// Twin of src/model/signal.rs: disturbances and faults of one channel, what is held over a step and what varies within it.
+// Twin of src/model/signal.rs and src/model/signal/command.rs: disturbances and faults of one channel, what is held over a step and
+// what varies within it.
 
 // A periodic signal; its list says of what shape. `held` is the amplitude of this step.
 struct Wave {
@@ -21,15 +22,20 @@ var<private> held_sensor: f32;
 // What faults leave of the command in this step, and what they add to it.
 var<private> command_gain: f32;
 var<private> command_bias: f32;
-// By how much the command may leave the last one: at the start of this step, and from there to its end.
-var<private> slew: vec2<f32>;
+// By how much the acting command may change in a step.
+var<private> slew: f32;
+// Whether the link brings no new command (1 or 0).
+var<private> blocked: f32;
 // By what share x and x' are measured too large in this step.
 var<private> scale: f32;
 // Whether the measurement stays what it was (1 or 0).
 var<private> frozen: f32;
 // 1 / true inertia in this step.
 var<private> inverse_inertia: f32;
-// The command, and x and x' as measured, at the start of the last step.
+// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the one that acted,
+// and x and x' as measured.
+var<private> last_sent: f32;
+var<private> last_arrived: f32;
 var<private> last_command: f32;
 var<private> last_measured: vec2<f32>;
 // d1 and f2 at the current stage's time.
@@ -79,6 +85,7 @@ fn signals_hold(step: u32, team: f32) {
     }
 }
 
+// Sets what faults do to the command in step number `step`; `team` is the sum of the team's last commands.
 fn hold_command(step: u32, team: f32) {
     var gain = 1.0;
     for (var k = 0u; k < N_LOSSES; k++) {
@@ -109,20 +116,12 @@ fn hold_command(step: u32, team: f32) {
         let weight = switch_weight(RATE_LIMITS + k, step);
         limit = lane_select_le(0.5, weight, lane_min(switch_value(RATE_LIMITS + k), limit), limit);
     }
+    slew = limit;
+    var blocks = 0.0;
     for (var k = 0u; k < N_COMMAND_HOLDS; k++) {
-        let holds = burst_at(COMMAND_HOLDS + k, step).x;
-        limit = lane_select_le(0.5, holds, 0.0, limit);
+        blocks = lane_max(blocks, burst_at(COMMAND_HOLDS + k, step).x);
     }
-    var at_start = limit;
-    var within = limit;
-    if HOLD_STEPS > 1u {
-        within = 0.0;
-        at_start = select(0.0, at_start, signals_ticks(step));
-    }
-    if step == 0u {
-        at_start = MAX;
-    }
-    slew = vec2(at_start, within);
+    blocked = blocks;
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
         ring_hold(k, step);
     }
@@ -160,12 +159,12 @@ fn hold_sensor(step: u32) {
     }
 }
 
-// Evaluates d1, f2 and the actuator at a moment of the step, whose phases are half a step further each.
-fn signals_evaluate(moment: u32) {
+// Evaluates d1, f2 and the actuator at a moment of step number `step`, whose phases are half a step further each.
+fn signals_evaluate(step: u32, moment: u32) {
     let advance = moment != START;
     disturbance = held_disturbance;
     sensor_fault = held_sensor;
-    if !advance || N_COMMAND_WAVES > 0u || N_COMMAND_RINGS > 0u {
+    if !advance || N_COMMAND_WAVES > 0u || CARRIES {
         actuator.gain = command_gain;
         actuator.bias = command_bias;
     }
@@ -190,38 +189,67 @@ fn signals_evaluate(moment: u32) {
         let sine = wave_turned(k - SINES, advance);
         actuator.bias = fma(sine, waves[k - SINES].held, actuator.bias);
     }
-    if N_COMMAND_RINGS > 0u {
-        recall_command(moment);
+    if CARRIES {
+        carry_command(step, moment);
     }
-    if LIMITS_RATE {
-        limit_rate(moment);
+    if N_RATE_LIMITS > 0u {
+        limit_rate(step, moment);
     }
 }
 
-// Replaces the wanted command by a past one, where the past is played.
-fn recall_command(moment: u32) {
+// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant within a step,
+// and stays so however late it arrives: delays are whole steps.
+fn carry_command(step: u32, moment: u32) {
+    let sampled = HOLD_STEPS > 1u;
+    let held = sampled && (moment != START || !signals_ticks(step));
+    let recalled = select(moment, START, sampled);
+    // What is sent at first arrives, blocked or not: before it there is nothing.
+    let first = step == 0u && moment == START;
     var wanted = vec2(1.0, 0.0);
-    var past = vec2(0.0);
+    var other = vec2(0.0);
+    if held {
+        wanted = vec2(0.0);
+        other = vec2(last_sent, 0.0);
+    }
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
-        past = ring_recall(k, moment, past);
+        other = ring_recall(k, recalled, other);
         wanted = ring_or_past(k, wanted, vec2(0.0));
     }
+    if N_COMMAND_HOLDS > 0u && !first {
+        other.x = lane_select_le(0.5, blocked, last_arrived, other.x);
+        wanted.x = lane_select_le(0.5, blocked, 0.0, wanted.x);
+    }
     let gain = actuator.gain;
-    actuator.bias = fma(past.x, gain, actuator.bias);
+    actuator.bias = fma(other.x, gain, actuator.bias);
     actuator.gain = gain * wanted.x;
 }
 
-// Keeps the command near the last one.
-fn limit_rate(moment: u32) {
-    var near = slew.x;
+// Keeps the acting command near the one at the start of the last step; at first, there is none.
+fn limit_rate(step: u32, moment: u32) {
+    var near = slew;
     if moment == MIDDLE {
-        near = slew.y * 0.5;
+        near = slew * 0.5;
     }
-    if moment == END {
-        near = slew.y;
+    if step == 0u && moment == START {
+        near = MAX;
     }
     actuator.low = last_command - near;
     actuator.high = last_command + near;
+}
+
+// Takes in what was wanted at the start of step number `step`: what of it was sent, and what arrived.
+fn remember_command(step: u32, wanted: f32) {
+    if signals_ticks(step) {
+        last_sent = wanted;
+    }
+    var carried = vec2(last_sent, 0.0);
+    for (var k = 0u; k < N_COMMAND_RINGS; k++) {
+        let recalled = ring_recall(k, START, carried);
+        ring_record(k, step, carried);
+        carried = recalled;
+    }
+    let arrives = lane_select_le(0.5, blocked, last_arrived, carried.x);
+    last_arrived = select(arrives, carried.x, step == 0u);
 }
 
 // x and x' as they are measured at a moment of the step.
@@ -237,12 +265,7 @@ fn measure(moment: u32, motion: vec2<f32>) -> vec2<f32> {
 fn signals_remember(step: u32, wanted: f32, motion: vec2<f32>) {
     last_measured = measure(START, motion);
     last_command = actuator_command(wanted);
-    var sent = vec2(wanted, 0.0);
-    for (var k = 0u; k < N_COMMAND_RINGS; k++) {
-        let recalled = ring_recall(k, START, sent);
-        ring_record(k, step, sent);
-        sent = recalled;
-    }
+    remember_command(step, wanted);
     var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
     for (var k = 0u; k < N_SENSOR_RINGS; k++) {
         let ring = N_COMMAND_RINGS + k;

@@ -472,7 +472,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     }
 }
 
-/// Lengths of time that are flown in whole steps as they are flown; all else as it was drawn.
+/// Lengths of time as they are flown, in whole steps; all else as it was drawn.
 fn as_flown(time: Time, parameter: &Parameter, values: &[f64]) -> Vec<f64> {
     let flown = |value: &f64| match parameter.name {
         "onset_s" => f64::from(time.onset_step(*value)) * time.step_s,
@@ -484,10 +484,8 @@ fn as_flown(time: Time, parameter: &Parameter, values: &[f64]) -> Vec<f64> {
 
 /// The values of the channels on which something acts; not a number elsewhere.
 fn where_it(values: &[f64], acts: impl Fn(usize) -> bool) -> Vec<f64> {
-    let of_channels = values.iter().enumerate();
-    of_channels
-        .map(|(channel, &value)| if acts(channel) { value } else { f64::NAN })
-        .collect()
+    let kept = |(channel, &value)| if acts(channel) { value } else { f64::NAN };
+    values.iter().enumerate().map(kept).collect()
 }
 
 fn write_channels(

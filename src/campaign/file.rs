@@ -389,7 +389,7 @@ pub struct ControlFile {
     pub integral: Option<IntegralKind>,
     /// Time that a command takes to the actuator, s; whole steps (default: none).
     pub delay_s: Option<Value>,
-    /// Commands per second, held in between; whole steps (default: a command at every instant).
+    /// Commands per second, each held by the controller until the next; whole steps (default: a command at every instant).
     pub rate_hz: Option<f64>,
 }
 

@@ -238,7 +238,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     fn evaluate(&mut self, moment: Moment) {
         for agent in &mut self.agents {
-            kernel::evaluate(&mut agent.signals, moment);
+            kernel::evaluate(&mut agent.signals, self.step, moment);
         }
     }
 

@@ -7,6 +7,7 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
+mod command;
 pub(crate) mod kernel;
 
 use super::lanes::{Lane, MAX_WIDTH, Real};
@@ -63,7 +64,7 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
 
     /// Lost shares of the command, now and then.
     pub(crate) intermittents: Vec<Burst<L, NC>>,
-    /// When the command stays what it was (the value is 1).
+    /// When the link brings no new command (the value is 1).
     pub(crate) command_holds: Vec<Burst<L, NC>>,
     /// When the measurement stays what it was (the value is 1).
     pub(crate) sensor_holds: Vec<Burst<L, NC>>,
@@ -94,8 +95,10 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     /// What faults leave of the command in this step, and what they add to it.
     pub(crate) command_gain: [L; NC],
     pub(crate) command_bias: [L; NC],
-    /// By how much the command may leave the last one: at this step's start, and from there to its end.
-    pub(crate) slew: [[L; 2]; NC],
+    /// By how much the acting command may change in a step.
+    pub(crate) slew: [L; NC],
+    /// Whether the link brings no new command (1 or 0).
+    pub(crate) blocked: [L; NC],
     /// By what share x and x' are measured too large in this step.
     pub(crate) scale: [L; NC],
     /// Whether the measurement stays what it was (1 or 0).
@@ -103,7 +106,10 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     /// 1 / true inertia in this step.
     pub(crate) inverse_inertia: [L; NC],
 
-    /// The command, and x and x' as measured, at the start of the last step.
+    /// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the one that
+    /// acted, and x and x' as measured.
+    pub(crate) last_sent: [L; NC],
+    pub(crate) last_arrived: [L; NC],
     pub(crate) last_command: [L; NC],
     pub(crate) last_measured: [[L; 2]; NC],
 
@@ -150,10 +156,13 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
             held_sensor: zero,
             command_gain: one,
             command_bias: zero,
-            slew: [[L::splat(L::Real::MAX); 2]; NC],
+            slew: [L::splat(L::Real::MAX); NC],
+            blocked: zero,
             scale: zero,
             frozen: zero,
             inverse_inertia: one,
+            last_sent: zero,
+            last_arrived: zero,
             last_command: zero,
             last_measured: [[L::number(0.0); 2]; NC],
             disturbance: zero,
@@ -162,9 +171,9 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
         }
     }
 
-    /// Whether the command of the last step matters to this one.
-    pub(crate) fn limits_rate(&self) -> bool {
-        !self.rate_limits.is_empty() || !self.command_holds.is_empty() || self.hold_steps > 1
+    /// Whether another command may arrive at the actuators than the one that is wanted now.
+    pub(crate) fn carries(&self) -> bool {
+        self.hold_steps > 1 || !self.command_rings.is_empty() || !self.command_holds.is_empty()
     }
 
     /// Whether a sampled controller gives a new command at the start of a step.
@@ -179,10 +188,10 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
 
     /// Whether anything of a step matters to the next.
     pub(crate) fn remembers(&self) -> bool {
-        self.limits_rate()
+        self.carries()
+            || !self.rate_limits.is_empty()
             || !self.leaks.is_empty()
             || !self.sensor_holds.is_empty()
-            || !self.command_rings.is_empty()
             || !self.sensor_rings.is_empty()
     }
 
@@ -241,69 +250,6 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
     }
 
     #[inline(always)]
-    pub(crate) fn hold_command(
-        &mut self,
-        c: usize,
-        step: u32,
-        team: L,
-        seed: u64,
-        episodes: &[u32; MAX_WIDTH],
-    ) {
-        let (zero, one) = (L::number(0.0), L::number(1.0));
-        let now = L::number(f64::from(step));
-        let far = L::splat(L::Real::MAX);
-        let mut gain = one;
-        for loss in &self.losses {
-            gain = gain * (one - loss[c].at(now));
-        }
-        for loss in &self.intermittents {
-            let [lost, _] = loss.at(c, step, seed, episodes);
-            gain = gain * (one - lost);
-        }
-        let mut bias = zero;
-        for added in &self.command_biases {
-            bias = bias + added[c].at(now);
-        }
-        for leak in &self.leaks {
-            let others = team - self.last_command[c];
-            bias = others.mul_add(leak[c].at(now), bias);
-        }
-        for over in &self.hard_overs {
-            let weight = over[c].weight(now);
-            let left = one - weight;
-            gain = gain * left;
-            bias = over[c].value.mul_add(weight, bias * left);
-        }
-        self.command_gain[c] = gain;
-        self.command_bias[c] = bias;
-        let mut slew = far;
-        for limit in &self.rate_limits {
-            slew = L::select_le(
-                L::number(0.5),
-                limit[c].weight(now),
-                limit[c].value.min(slew),
-                slew,
-            );
-        }
-        for hold in &self.command_holds {
-            let [holds, _] = hold.at(c, step, seed, episodes);
-            slew = L::select_le(L::number(0.5), holds, zero, slew);
-        }
-        let (mut at_start, mut within) = (slew, slew);
-        if self.hold_steps > 1 {
-            within = zero;
-            at_start = if self.ticks(step) { at_start } else { zero };
-        }
-        if step == 0 {
-            at_start = far;
-        }
-        self.slew[c] = [at_start, within];
-        for ring in &mut self.command_rings {
-            ring.hold(c, step);
-        }
-    }
-
-    #[inline(always)]
     pub(crate) fn hold_sensor(
         &mut self,
         c: usize,
@@ -354,24 +300,21 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
         episodes: &[u32; MAX_WIDTH],
     ) -> ([L; NC], [[L; 2]; NC]) {
         self.hold(0, &[L::number(0.0); NC], seed, episodes);
-        self.evaluate(Moment::Start);
+        self.evaluate(0, Moment::Start);
         let position = std::array::from_fn(|c| reference[c] + initial[c][1]);
         let velocity = std::array::from_fn(|c| reference_rate[c] + initial[c][2]);
         let off = distortion(&self, Moment::Start, &[position, velocity]);
         (self.sensor_fault, off)
     }
 
-    /// Evaluates d1, f2 and the actuators at a moment of the step, whose phases are half a step further each.
+    /// Evaluates d1, f2 and the actuators at a moment of step number `step`, whose phases are half a step further each.
     #[inline(always)]
-    pub(crate) fn evaluate(&mut self, moment: Moment) {
+    pub(crate) fn evaluate(&mut self, step: u32, moment: Moment) {
         let advance = moment != Moment::Start;
         let half = L::number(0.5);
         self.disturbance = self.held_disturbance;
         self.sensor_fault = self.held_sensor;
-        if moment == Moment::Start
-            || !self.command_waves.is_empty()
-            || !self.command_rings.is_empty()
-        {
+        if moment == Moment::Start || !self.command_waves.is_empty() || self.carries() {
             self.actuator.gain = self.command_gain;
             self.actuator.bias = self.command_bias;
         }
@@ -406,42 +349,11 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
                 self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
             }
         }
-        if !self.command_rings.is_empty() {
-            self.recall_command(moment);
+        if self.carries() {
+            self.carry_command(step, moment);
         }
-        if self.limits_rate() {
-            self.limit_rate(moment);
-        }
-    }
-
-    /// Replaces the wanted command by a past one, where the past is played.
-    #[inline(always)]
-    pub(crate) fn recall_command(&mut self, moment: Moment) {
-        let (zero, one) = (L::number(0.0), L::number(1.0));
-        for c in 0..NC {
-            let (mut wanted, mut past) = (one, [zero]);
-            for ring in &self.command_rings {
-                past = ring.recall(c, moment, past);
-                [wanted] = ring.or_past(c, [wanted], [zero]);
-            }
-            let gain = self.actuator.gain[c];
-            self.actuator.bias[c] = past[0].mul_add(gain, self.actuator.bias[c]);
-            self.actuator.gain[c] = gain * wanted;
-        }
-    }
-
-    /// Keeps the command near the last one.
-    #[inline(always)]
-    pub(crate) fn limit_rate(&mut self, moment: Moment) {
-        for c in 0..NC {
-            let [at_start, within] = self.slew[c];
-            let slew = match moment {
-                Moment::Start => at_start,
-                Moment::Middle => within * L::number(0.5),
-                Moment::End => within,
-            };
-            self.actuator.low[c] = self.last_command[c] - slew;
-            self.actuator.high[c] = self.last_command[c] + slew;
+        if !self.rate_limits.is_empty() {
+            self.limit_rate(step, moment);
         }
     }
 
@@ -470,12 +382,7 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
     pub(crate) fn remember(&mut self, c: usize, step: u32, wanted: L, motion: [L; 2]) {
         self.last_measured[c] = self.measure(c, Moment::Start, motion);
         self.last_command[c] = self.actuator.command(c, wanted);
-        let mut wanted = [wanted];
-        for ring in &mut self.command_rings {
-            let recalled = ring.recall(c, Moment::Start, wanted);
-            ring.record(c, step, wanted);
-            wanted = recalled;
-        }
+        self.remember_command(c, step, wanted);
         let [position, velocity] = motion;
         let scale = self.scale[c];
         let mut seen = [

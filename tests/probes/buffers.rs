@@ -139,6 +139,8 @@ pub(super) fn resumed<P: Flies<NC, NX>, const NC: usize, const NS: usize, const 
             forget(&mut agent.signals);
             if !world.shape.lists.remembers {
                 agent.held_feedback = [none; NC];
+                agent.signals.last_sent = [none; NC];
+                agent.signals.last_arrived = [none; NC];
                 agent.signals.last_command = [none; NC];
                 agent.signals.last_measured = [[none; 2]; NC];
             }
@@ -166,11 +168,13 @@ pub(super) fn kept<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
         last_command = number(8u);
         last_measured = vec2(number(9u), number(10u));
         own.held_feedback = number(11u);
+        last_sent = number(12u);
+        last_arrived = number(13u);
         keep();";
-    world.check(lab, body, 0, sized([1.0; 12]), |scene| {
+    world.check(lab, body, 0, sized([1.0; 14]), |scene| {
         scene.kept = true;
         scene.each(|scene, a, c| {
-            let inputs: [Tracked; 12] = scene.numbers(a, c);
+            let inputs: [Tracked; 14] = scene.numbers(a, c);
             let agent = &mut scene.group.agents[a];
             agent.channels[c].start[..6].copy_from_slice(&inputs[..6]);
             let metrics = &mut agent.metrics[c];
@@ -180,6 +184,8 @@ pub(super) fn kept<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
             agent.signals.last_command[c] = inputs[8];
             agent.signals.last_measured[c] = [inputs[9], inputs[10]];
             agent.held_feedback[c] = inputs[11];
+            agent.signals.last_sent[c] = inputs[12];
+            agent.signals.last_arrived[c] = inputs[13];
         });
     })
 }

@@ -408,6 +408,18 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "episode",
+        "last_arrived = stored_number(MEMORY + 5u);",
+        "last_arrived = stored_number(MEMORY + 4u);",
+        "resume",
+    ),
+    control(
+        "episode",
+        "store_number(MEMORY + 4u, last_sent);",
+        "store_number(MEMORY + 4u, last_arrived);",
+        "keep",
+    ),
+    control(
+        "episode",
         "store_number(MEMORY + 2u, last_measured.y);",
         "store_number(MEMORY + 2u, last_measured.x);",
         "keep",

@@ -10,7 +10,7 @@ use crate::model::memory::Ring;
 use crate::model::metric::Sums;
 
 /// Words of the image that every shape has, before its waves and rings.
-const FIXED_IMAGE: usize = 67;
+const FIXED_IMAGE: usize = 69;
 /// Where in the image it is told when the channel failed.
 pub(super) const FAILED: usize = 51;
 /// States that the shaders have room for.
@@ -67,7 +67,6 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words.extend([metrics.largest, metrics.largest_command].map(Near));
     words.extend([metrics.outside, metrics.outside_before_fault].map(Last));
     words.extend([First(agent.failed), next_change]);
-    let (slew, last_measured) = (signals.slew[c], signals.last_measured[c]);
     for held in [
         signals.held_disturbance,
         signals.scale,
@@ -79,10 +78,14 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
         signals.actuator.high,
         signals.last_command,
         agent.held_feedback,
+        signals.slew,
+        signals.blocked,
+        signals.last_sent,
+        signals.last_arrived,
     ] {
         words.push(Near(held[c]));
     }
-    words.extend(slew.into_iter().chain(last_measured).map(Near));
+    words.extend(signals.last_measured[c].map(Near));
     for wave in waves(signals) {
         words.extend([Bits(wave[c].phase), Near(wave[c].held)]);
     }
@@ -121,8 +124,15 @@ pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
         there.extend(turbulence.state[c].map(Near));
     }
     let [position, velocity] = signals.last_measured[c];
-    let (command, feedback) = (signals.last_command[c], agent.held_feedback[c]);
-    let memory = [command, position, velocity, feedback].map(Near);
+    let memory = [
+        signals.last_command[c],
+        position,
+        velocity,
+        agent.held_feedback[c],
+        signals.last_sent[c],
+        signals.last_arrived[c],
+    ]
+    .map(Near);
     let memory: &[Expected] = if lists.remembers { &memory } else { &[] };
     let mut samples = Vec::new();
     for ring in &signals.command_rings {

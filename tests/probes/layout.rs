@@ -276,7 +276,7 @@ fn val_constants_are_those_of_rust() {
             ("MEASURED_INTEGRAL", flag(shape.measured_integral)),
             ("RESTLESS", flag(shape.lists.restless)),
             ("REMEMBERS", flag(shape.lists.remembers)),
-            ("LIMITS_RATE", flag(shape.lists.limits_rate)),
+            ("CARRIES", flag(shape.lists.carries)),
             ("DISTORTS", flag(shape.lists.distorts)),
             ("PUBLISHED", count(shape.published())),
             ("FTC", flag(shape.ftc)),

@@ -90,9 +90,12 @@ fn load() {
     actuator = Actuator(taken_number(57u), taken_number(58u), taken_number(59u), taken_number(60u));
     last_command = taken_number(61u);
     own.held_feedback = taken_number(62u);
-    slew = vec2(taken_number(63u), taken_number(64u));
-    last_measured = vec2(taken_number(65u), taken_number(66u));
-    var at = 67u;
+    slew = taken_number(63u);
+    blocked = taken_number(64u);
+    last_sent = taken_number(65u);
+    last_arrived = taken_number(66u);
+    last_measured = vec2(taken_number(67u), taken_number(68u));
+    var at = 69u;
     for (var k = 0u; k < N_WAVES; k++) {
         waves[k].phase = taken(at);
         waves[k].held = taken_number(at + 1u);
@@ -146,11 +149,13 @@ fn leave() {
     give_number(60u, actuator.high);
     give_number(61u, last_command);
     give_number(62u, own.held_feedback);
-    give_number(63u, slew.x);
-    give_number(64u, slew.y);
-    give_number(65u, last_measured.x);
-    give_number(66u, last_measured.y);
-    var at = 67u;
+    give_number(63u, slew);
+    give_number(64u, blocked);
+    give_number(65u, last_sent);
+    give_number(66u, last_arrived);
+    give_number(67u, last_measured.x);
+    give_number(68u, last_measured.y);
+    var at = 69u;
     for (var k = 0u; k < N_WAVES; k++) {
         give(at, waves[k].phase);
         give_number(at + 1u, waves[k].held);

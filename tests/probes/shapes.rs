@@ -59,8 +59,8 @@ const fn single(list: usize) -> Counts {
 fn lists((counts, turbulences, vortices): Counts) -> Lists {
     let count = |name: &str| counts[LISTS.iter().position(|list| *list == name).unwrap()];
     let any = |names: &[&str]| names.iter().any(|name| count(name) > 0);
-    let limits_rate = any(&["RATE_LIMITS", "COMMAND_HOLDS"]);
-    let remembers = limits_rate || any(&["LEAKS", "SENSOR_HOLDS", "COMMAND_RINGS", "SENSOR_RINGS"]);
+    let carries = any(&["COMMAND_HOLDS", "COMMAND_RINGS"]);
+    let remembers = carries || any(&["LEAKS", "RATE_LIMITS", "SENSOR_HOLDS", "SENSOR_RINGS"]);
     let bursts = ["INTERMITTENTS", "COMMAND_HOLDS", "SENSOR_HOLDS", "OUTLIERS"];
     let bursts = bursts.map(count).iter().sum();
     let rings = count("COMMAND_RINGS") + count("SENSOR_RINGS");
@@ -77,7 +77,7 @@ fn lists((counts, turbulences, vortices): Counts) -> Lists {
         hold_steps: 1,
         restless: remembers || turbulences > 0 || any(&["NOISES", "INTERMITTENTS", "OUTLIERS"]),
         remembers,
-        limits_rate,
+        carries,
         distorts: any(&["SCALES", "SENSOR_HOLDS", "SENSOR_RINGS"]),
     }
 }

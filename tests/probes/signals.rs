@@ -146,11 +146,11 @@ pub(super) fn evaluated<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); signals_evaluate((stage + 1u) / 2u);";
+    let body = "load(); signals_evaluate(step, (stage + 1u) / 2u);";
     world.check(lab, body, 0, nothing, |scene| {
-        let moment = moment(scene.stage);
+        let (step, moment) = (scene.step, moment(scene.stage));
         for agent in &mut scene.group.agents {
-            agent.signals.evaluate(moment);
+            agent.signals.evaluate(step, moment);
         }
     })
 }
@@ -180,12 +180,15 @@ pub(super) fn commands<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); recall_command((stage + 1u) / 2u); limit_rate((stage + 1u) / 2u);";
+    let body = "
+        load();
+        carry_command(step, (stage + 1u) / 2u);
+        limit_rate(step, (stage + 1u) / 2u);";
     world.check(lab, body, 0, nothing, |scene| {
-        let moment = moment(scene.stage);
+        let (step, moment) = (scene.step, moment(scene.stage));
         for agent in &mut scene.group.agents {
-            agent.signals.recall_command(moment);
-            agent.signals.limit_rate(moment);
+            agent.signals.carry_command(step, moment);
+            agent.signals.limit_rate(step, moment);
         }
     })
 }

@@ -294,6 +294,8 @@ fn remembered<const NC: usize>(signals: &mut Signals<Tracked, NC>, numbers: &mut
         &mut signals.command_gain,
         &mut signals.command_bias,
         &mut signals.scale,
+        &mut signals.last_sent,
+        &mut signals.last_arrived,
         &mut signals.last_command,
         &mut signals.disturbance,
         &mut signals.sensor_fault,
@@ -302,7 +304,7 @@ fn remembered<const NC: usize>(signals: &mut Signals<Tracked, NC>, numbers: &mut
     ] {
         *held = held.map(|_| some(1.0));
     }
-    signals.slew = signals.slew.map(|slew| slew.map(|_| some(0.5).abs()));
+    signals.slew = signals.slew.map(|_| some(0.5).abs());
     signals.last_measured = signals.last_measured.map(|last| last.map(|_| some(1.0)));
     signals.inverse_inertia = signals
         .inverse_inertia
@@ -327,6 +329,7 @@ fn remembered<const NC: usize>(signals: &mut Signals<Tracked, NC>, numbers: &mut
     }
     for c in 0..NC {
         signals.frozen[c] = Tracked::number(numbers.one_of(&[0.0, 1.0]));
+        signals.blocked[c] = Tracked::number(numbers.one_of(&[0.0, 1.0]));
         let far = f64::from(f32::MAX);
         let (low, high) = (numbers.between(-1.0, 0.0), numbers.between(0.0, 1.0));
         let [low, high] = numbers.one_of(&[[-far, far], [low, high], [low, low]]);

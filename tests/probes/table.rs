@@ -288,13 +288,13 @@ pub(super) const SIGNALS: &[Probe] = &[
     probe!("wave_turned", ["wave_turned"], over_shapes!(signals::turns)),
     probe!(
         "commands",
-        ["recall_command", "limit_rate"],
+        ["carry_command", "limit_rate"],
         over_shapes!(signals::commands)
     ),
     probe!("measure", ["measure"], over_shapes!(signals::measured)),
     probe!(
         "signals_remember",
-        ["signals_remember"],
+        ["signals_remember", "remember_command"],
         over_shapes!(signals::remembered)
     ),
     probe!(

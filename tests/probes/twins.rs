@@ -163,14 +163,21 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         &[
             ("ticks", "signals_ticks"),
             ("hold", "signals_hold"),
-            ("hold_command", "hold_command"),
             ("hold_sensor", "hold_sensor"),
             ("evaluate", "signals_evaluate"),
-            ("recall_command", "recall_command"),
-            ("limit_rate", "limit_rate"),
             ("measure", "measure"),
             ("remember", "signals_remember"),
             ("turned", "wave_turned"),
+        ],
+    ),
+    (
+        "command",
+        include_str!("../../src/model/signal/command.rs"),
+        &[
+            ("hold_command", "hold_command"),
+            ("carry_command", "carry_command"),
+            ("limit_rate", "limit_rate"),
+            ("remember_command", "remember_command"),
         ],
     ),
     (
@@ -281,7 +288,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "how draws become words and constants",
     ),
     (
-        &["limits_rate", "distorts", "remembers", "is_restless", "of"],
+        &["carries", "distorts", "remembers", "is_restless", "of"],
         "constants of the shader",
     ),
     (

@@ -70,6 +70,56 @@ radius_m = 3.0
 length_m = 0.3
 ";
 
+/// A link and actuators that fail together, under a sampled controller whose commands come late by half its period.
+fn linked(changes: &[(&str, &str)]) -> Campaign {
+    let own = [
+        ("episodes = 256", "episodes = 8"),
+        ("duration_s = 20.0", "duration_s = 2.0"),
+        ("observer = \"zero\"", LINKED),
+    ];
+    altered("no-fault", &[&own[..], changes].concat())
+}
+
+const LINKED: &str = "
+[control]
+rate_hz = 250.0
+delay_s = 0.002
+[[fault]]
+target = \"network\"
+kind = \"denial-of-service\"
+probability = 0.7
+onset_s = { uniform = [0.4, 1.2] }
+duration_s = 0.3
+burst_s = 0.006
+share = 0.4
+[[fault]]
+target = \"network\"
+kind = \"replay\"
+probability = 0.5
+onset_s = { uniform = [0.5, 1.5] }
+duration_s = 0.03
+window_s = 0.014
+[[fault]]
+target = \"actuator\"
+kind = \"float\"
+probability = 0.7
+onset_s = { uniform = [0.4, 1.5] }
+duration_s = { uniform = [0.002, 0.03] }
+[[fault]]
+target = \"actuator\"
+kind = \"loss-of-effectiveness\"
+probability = 0.7
+onset_s = { uniform = [0.4, 1.5] }
+magnitude = { uniform = [0.1, 0.4] }
+[[fault]]
+target = \"actuator\"
+kind = \"rate-limit\"
+probability = 0.7
+onset_s = { uniform = [0.4, 1.5] }
+duration_s = 0.2
+rate = { uniform = [200.0, 600.0] }
+";
+
 /// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are not.
 fn mixed_biped(changes: &[(&str, &str)]) -> Campaign {
     let mut campaign = replaced("mixed_biped", changes);

@@ -54,10 +54,10 @@ pub(crate) struct Lists {
     pub(crate) ring_steps: usize,
     /// Steps for which a command is held.
     pub(crate) hold_steps: u32,
-    /// [`Signals::is_restless`], [`Signals::remembers`], [`Signals::limits_rate`], [`Signals::distorts`].
+    /// [`Signals::is_restless`], [`Signals::remembers`], [`Signals::carries`], [`Signals::distorts`].
     pub(crate) restless: bool,
     pub(crate) remembers: bool,
-    pub(crate) limits_rate: bool,
+    pub(crate) carries: bool,
     pub(crate) distorts: bool,
 }
 
@@ -151,7 +151,7 @@ impl Lists {
             hold_steps: signals.hold_steps,
             restless: signals.is_restless(),
             remembers: signals.remembers(),
-            limits_rate: signals.limits_rate(),
+            carries: signals.carries(),
             distorts: signals.distorts(),
         }
     }

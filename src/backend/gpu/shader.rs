@@ -192,7 +192,7 @@ impl Shape {
         text.flag("MEASURED_INTEGRAL", self.measured_integral);
         text.flag("RESTLESS", self.lists.restless);
         text.flag("REMEMBERS", self.lists.remembers);
-        text.flag("LIMITS_RATE", self.lists.limits_rate);
+        text.flag("CARRIES", self.lists.carries);
         text.flag("DISTORTS", self.lists.distorts);
         text.flag("FTC", self.ftc);
         text.flag("LIMITED", self.limited());

@@ -28,8 +28,9 @@ const SWITCH_WORDS: usize = 4;
 const TURBULENCE_WORDS: usize = 9;
 /// Words of a vortex: force, 1 / radius, 2 / length.
 const VORTEX_WORDS: usize = 3;
-/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held.
-const MEMORY_WORDS: usize = 4;
+/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held, the commands
+/// that were sent and that arrived last.
+const MEMORY_WORDS: usize = 6;
 
 /// Where the words of a channel are, in its draw and in its state.
 #[derive(Debug, Clone, Copy)]

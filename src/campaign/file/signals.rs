@@ -236,9 +236,9 @@ pub enum FaultKind {
     Oscillatory,
     /// Actuator: a loss of effectiveness in some slots of time.
     Intermittent,
-    /// Actuator: changes by at most `rate` per second.
+    /// Actuator: what acts changes by at most `rate` per second, whatever arrives.
     RateLimit,
-    /// Actuator, sensor or network: what arrives is `delay_s` old.
+    /// Actuator, sensor or network: the command, or x and x' without f2, arrives `delay_s` later.
     Delay,
     /// Actuator, sensor or network: an offset that grows by `rate` per second.
     Drift,
@@ -246,9 +246,9 @@ pub enum FaultKind {
     Scale,
     /// Sensor: normal noise, held over a step.
     Noise,
-    /// Sensor: shows the last measurement for ever.
+    /// Sensor: shows the last x and x' for ever; what others add to the measurement (f2: bias, noise, outliers, false data) goes on.
     Freeze,
-    /// Sensor: shows the last measurement in some slots of time.
+    /// Sensor: shows the last x and x' in some slots of time; f2 goes on.
     Dropout,
     /// Sensor: in some steps the measurement is off by the amplitude, up or down.
     Outlier,
@@ -256,9 +256,10 @@ pub enum FaultKind {
     SmoothedSquare,
     /// Network: an offset that an attacker adds.
     FalseData,
-    /// Network: in some slots of time nothing arrives, and the last message is held.
+    /// Network: in some slots of time nothing arrives, and the last command, or the last x and x' without f2, is held ahead of the
+    /// faults of its receiver.
     DenialOfService,
-    /// Network: what was recorded before the onset is played again and again.
+    /// Network: the commands, or x and x' without f2, recorded before the onset are played again and again.
     Replay,
     /// Network: `magnitude` times the sum of the other agents' commands on this channel leaks into the command.
     Interference,

@@ -38,18 +38,27 @@ impl<L: Lane, const NC: usize> Kernel for Hold<'_, L, NC> {
     fn run(self) {
         self.signals
             .hold(self.step, self.team, self.seed, self.episodes);
-        self.signals.evaluate(Moment::Start);
+        self.signals.evaluate(self.step, Moment::Start);
     }
 }
 
 /// [`Signals::evaluate`], for the middle and the end of a step.
 #[inline(always)]
-pub(crate) fn evaluate<L: Lane, const NC: usize>(signals: &mut Signals<L, NC>, moment: Moment) {
-    L::dispatch(Evaluate { signals, moment });
+pub(crate) fn evaluate<L: Lane, const NC: usize>(
+    signals: &mut Signals<L, NC>,
+    step: u32,
+    moment: Moment,
+) {
+    L::dispatch(Evaluate {
+        signals,
+        step,
+        moment,
+    });
 }
 
 struct Evaluate<'a, L: Lane, const NC: usize> {
     signals: &'a mut Signals<L, NC>,
+    step: u32,
     moment: Moment,
 }
 
@@ -57,7 +66,7 @@ impl<L: Lane, const NC: usize> Kernel for Evaluate<'_, L, NC> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        self.signals.evaluate(self.moment);
+        self.signals.evaluate(self.step, self.moment);
     }
 }
 

@@ -25,12 +25,16 @@ struct Between {
     measured_integral: bool,
     /// Steps for which a sampled controller holds its command.
     hold: Option<usize>,
+    /// When the link of the command is blocked, and when the actuator floats: the first step, and the first step after.
+    blocked: Option<(usize, usize)>,
+    floats: Option<(usize, usize)>,
 }
 
 /// What was at the start of each step.
 #[derive(Default)]
 struct Past {
-    wanted: Vec<f64>,
+    sent: Vec<f64>,
+    arrived: Vec<f64>,
     command: Vec<f64>,
     told: Vec<f64>,
     measured: Vec<[f64; 2]>,
@@ -58,17 +62,47 @@ fn on_the_line(from: f64, to: f64, half: usize) -> f64 {
 }
 
 impl Between {
-    fn command(&self, at: Moment, wanted: f64, past: &Past) -> f64 {
-        let Moment { step, half } = at;
-        if step == 0 && half == 0 {
-            return wanted;
+    /// What the controller sends: a sampled one what it wanted at its last tick.
+    fn sent(&self, at: Moment, wanted: f64, past: &Past) -> f64 {
+        match self.hold {
+            Some(hold) if at.half > 0 || !at.step.is_multiple_of(hold) => {
+                past.sent[at.step - at.step % hold]
+            }
+            _ => wanted,
         }
-        let mut u = wanted;
-        if let Some((late, since)) = self.command_late
-            && step >= since.max(1)
+    }
+
+    /// What the link makes of it: late, and where it is blocked what arrived last.
+    fn arrives(&self, at: Moment, sent: f64, past: &Past) -> f64 {
+        let Moment { step, half } = at;
+        if let Some((from, until)) = self.blocked
+            && (from..until).contains(&step)
         {
-            let sample = |step: usize| past.wanted[step.saturating_sub(late)];
-            u = on_the_line(sample(step), sample(step + 1), half);
+            return past.arrived[from - 1];
+        }
+        let Some((late, _)) = self
+            .command_late
+            .filter(|(_, since)| step >= *since.max(&1))
+        else {
+            return sent;
+        };
+        let sample = |step: usize| past.sent[step.saturating_sub(late)];
+        if half == 0 || self.hold.is_some() {
+            // A staircase that comes late by whole steps has its edges between steps.
+            sample(step)
+        } else {
+            on_the_line(sample(step), sample(step + 1), half)
+        }
+    }
+
+    /// What the actuator makes of it.
+    fn acts(&self, at: Moment, arrives: f64, past: &Past) -> f64 {
+        let Moment { step, half } = at;
+        let mut u = arrives;
+        if let Some((from, until)) = self.floats
+            && (from..until).contains(&step)
+        {
+            u = 0.0;
         }
         if let Some(rate_n_s) = self.rate_n_s
             && step >= ONSET
@@ -81,11 +115,6 @@ impl Between {
             };
             let reach = rate_n_s * STEP_S * steps;
             u = u.clamp(from - reach, from + reach);
-        }
-        if let Some(hold) = self.hold
-            && (half > 0 || !step.is_multiple_of(hold))
-        {
-            u = past.command[step - step % hold];
         }
         u
     }
@@ -147,11 +176,14 @@ fn simulate(gains: &LoopGains, between: Between) -> Vec<State> {
             let feedback = gains.k[0] * integral_hat + gains.k[1] * e_hat + gains.k[2] * rate_hat;
             let told = between.told(at, feedback, &past);
             let wanted = MASS_KG * (a + told) + DRAG_N_S_M * v;
-            let command = between.command(at, wanted, &past);
+            let sent = between.sent(at, wanted, &past);
+            let arrives = between.arrives(at, sent, &past);
+            let command = between.acts(at, arrives, &past);
             let motion = [r + e, v + rate];
             if stage == 0 {
                 let seen = between.measured(at, motion, &past);
-                past.wanted.push(wanted);
+                past.sent.push(sent);
+                past.arrived.push(arrives);
                 past.command.push(command);
                 past.told.push(told);
                 // What a delay keeps is what goes into it: no test here has two of them.
@@ -213,14 +245,22 @@ fn fault(target: &str, kind: &str, more: &str) -> String {
 /// Holds a flight against the formulas, and against those without what is between: the fault must matter.
 #[track_caller]
 fn holds(more: &str, between: Between) {
+    tells_apart(more, between, &[Between::default()]);
+}
+
+/// Holds a flight against the formulas, and against others that are not meant.
+#[track_caller]
+fn tells_apart(more: &str, between: Between, others: &[Between]) {
     let agrees = difference(more, between);
     // Sums of some hundred newtons over 500 steps of a stable loop, in double precision.
     assert!(agrees < 1e-11, "{agrees:e} m");
-    let blind = difference(more, Between::default());
-    assert!(
-        blind > 1e-6,
-        "without it the formulas differ by {blind:e} m only"
-    );
+    for (k, &other) in others.iter().enumerate() {
+        let apart = difference(more, other);
+        assert!(
+            apart > 1e-6,
+            "other formulas {k} differ by {apart:e} m only"
+        );
+    }
 }
 
 #[test]
@@ -316,4 +356,143 @@ fn val_a_sampled_controller_holds_its_command() {
     };
     holds("[control]\nrate_hz = 100.0\n", held);
     assert!(difference("[control]\nrate_hz = 125.0\n", held) > 1e-6);
+}
+
+/// 50 commands a second, each held for ten steps.
+const SAMPLED: &str = "[control]\nrate_hz = 50.0\n";
+fn held() -> Between {
+    Between {
+        hold: Some(10),
+        ..Between::default()
+    }
+}
+
+/// A link that is blocked from an onset on for a while, all the time.
+fn blocked(onset_s: f64, duration_s: f64) -> String {
+    format!(
+        "[[fault]]\ntarget = \"network\"\nkind = \"denial-of-service\"\nonset_s = {onset_s}\nduration_s = {duration_s}\nburst_s = 0.002\nshare = 1.0\n"
+    )
+}
+
+/// An actuator that gives nothing from an onset on for a while.
+fn floats(onset_s: &str, duration_s: &str) -> String {
+    let float = fault("actuator", "float", &format!("duration_s = {duration_s}"));
+    float.replace("onset_s = 0.3", &format!("onset_s = {onset_s}"))
+}
+
+#[test]
+fn val_a_limited_rate_is_that_of_the_actuator_also_between_the_ticks_of_a_controller() {
+    let limited = |rate_n_s: f64| Between {
+        rate_n_s: Some(rate_n_s),
+        ..held()
+    };
+    let limit = fault("actuator", "rate-limit", "rate = 20.0");
+    // One step's change per tick would be a tenth of it.
+    let others = [
+        held(),
+        limited(2.0),
+        Between {
+            hold: None,
+            ..limited(20.0)
+        },
+    ];
+    tells_apart(&format!("{SAMPLED}{limit}"), limited(20.0), &others);
+}
+
+#[test]
+fn val_a_float_between_two_ticks_takes_the_held_command_away() {
+    // Steps 251 to 258; the ticks are 250 and 260.
+    let float = floats("0.502", "0.016");
+    let floating = Between {
+        floats: Some((251, 259)),
+        ..held()
+    };
+    let later = Between {
+        floats: Some((252, 259)),
+        ..held()
+    };
+    tells_apart(&format!("{SAMPLED}{float}"), floating, &[held(), later]);
+}
+
+#[test]
+fn val_a_float_behind_a_blocked_link_gives_nothing() {
+    let blocked_only = Between {
+        blocked: Some((ONSET, STEPS)),
+        ..Between::default()
+    };
+    let both = Between {
+        floats: Some((300, STEPS)),
+        ..blocked_only
+    };
+    let float_only = Between {
+        blocked: None,
+        ..both
+    };
+    let more = format!("{}{}", blocked(0.3, 10.0), floats("0.6", "10.0"));
+    tells_apart(&more, both, &[blocked_only, float_only]);
+}
+
+#[test]
+fn val_a_link_that_opens_between_two_ticks_brings_what_the_controller_holds() {
+    // Steps 152 to 172: the ticks 160 and 170 are lost, and what was computed at the second arrives at step 173.
+    let until = |step: usize| Between {
+        blocked: Some((152, step)),
+        ..held()
+    };
+    let more = format!("{SAMPLED}{}", blocked(0.304, 0.042));
+    tells_apart(&more, until(173), &[held(), until(180), until(170)]);
+}
+
+#[test]
+fn val_a_delay_moves_the_held_command_by_its_own_steps_and_not_by_periods() {
+    let late = |steps: usize, since: usize| Between {
+        command_late: Some((steps, since)),
+        ..held()
+    };
+    // Seven steps of a period of ten.
+    let others = [held(), late(10, 0), late(6, 0)];
+    tells_apart(&format!("{SAMPLED}delay_s = 0.014\n"), late(7, 0), &others);
+    let delay = fault("actuator", "delay", "delay_s = 0.014");
+    let others = [held(), late(10, ONSET), late(7, 0)];
+    tells_apart(&format!("{SAMPLED}{delay}"), late(7, ONSET), &others);
+}
+
+#[test]
+fn val_all_that_is_on_the_way_of_a_command_comes_in_its_order() {
+    // Without a controller that is sampled, late commands lie on lines; the block and the float overlap.
+    for (control, hold) in [("[control]\n", None), (SAMPLED, Some(10))] {
+        let more = format!(
+            "{control}delay_s = 0.006\n{}{}{}",
+            blocked(0.346, 0.032),
+            floats("0.362", "0.028"),
+            fault("actuator", "rate-limit", "rate = 60.0")
+        );
+        let all = Between {
+            hold,
+            command_late: Some((3, 0)),
+            blocked: Some((173, 189)),
+            floats: Some((181, 195)),
+            rate_n_s: Some(60.0),
+            ..Between::default()
+        };
+        let others = [
+            Between {
+                blocked: None,
+                ..all
+            },
+            Between {
+                floats: None,
+                ..all
+            },
+            Between {
+                rate_n_s: None,
+                ..all
+            },
+            Between {
+                command_late: None,
+                ..all
+            },
+        ];
+        tells_apart(&more, all, &others);
+    }
 }

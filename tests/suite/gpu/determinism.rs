@@ -1,6 +1,6 @@
 //! The same bits, whatever the batch, the span of steps, the order and the company.
 
-use super::{ALIKE, BRIEF, Gains, fly, fly_all, mixed, mixed_biped, replaced};
+use super::{ALIKE, BRIEF, Gains, fly, fly_all, linked, mixed, mixed_biped, replaced};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{GpuFlyer, Tuning};
@@ -68,6 +68,19 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
     assert_eq!(all.len(), 16);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
     for (batch, steps) in [(Some(5), Some(100)), (None, Some(13))] {
+        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
+    }
+}
+
+#[test]
+fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let campaign = linked(&[("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"")]);
+    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    // Spans that end between the ticks of the controller, and while a link is blocked.
+    for (batch, steps) in [(Some(3), Some(101)), (None, Some(7))] {
         let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
     }

@@ -2,7 +2,7 @@
 
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
-use super::{fly, jets, replaced};
+use super::{fly, jets, linked, replaced};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
@@ -67,6 +67,14 @@ fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands
     let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));
     println!("{}: {summary}", campaign.name);
     assert!(summary.compared > 4);
+}
+
+#[test]
+fn val_links_and_actuators_that_fail_together_under_a_sampled_controller_agree() {
+    let Some([double, single]) = agreement(&linked(&[])) else {
+        return;
+    };
+    assert!(double.compared == 24 && single.compared == 24);
 }
 
 #[test]

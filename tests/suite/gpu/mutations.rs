@@ -2,7 +2,7 @@
 //! shows nothing.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
-use super::{ALIKE, BRIEF, Gains, fly_all, jets, mixed, mixed_biped, mixed_thrust};
+use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixed_thrust};
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
@@ -306,6 +306,30 @@ const JETS: [Mutation; 9] = [
     ),
 ];
 
+/// Noticed where links and actuators fail together.
+const LINK: [Mutation; 4] = [
+    (
+        "a blocked link holds what acted",
+        "lane_select_le(0.5, blocked, last_arrived, other.x)",
+        "lane_select_le(0.5, blocked, last_command, other.x)",
+    ),
+    (
+        "late steps of a command become slopes",
+        "select(moment, START, sampled)",
+        "moment",
+    ),
+    (
+        "an actuator is a little slower",
+        "slew = limit;",
+        "slew = limit * 0.99;",
+    ),
+    (
+        "what arrived does not outlive a dispatch",
+        "last_arrived = stored_number(MEMORY + 5u);",
+        "",
+    ),
+];
+
 /// A campaign on which mutations must show, flown by the fault-tolerant controller.
 struct Ground {
     campaign: Campaign,
@@ -419,6 +443,13 @@ fn mutations_of_jets_are_noticed() {
         ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
     ];
     Ground::new(jets(&own)).notices(&gpu, &JETS);
+}
+
+#[test]
+fn mutations_of_links_are_noticed() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let controllers = ("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"");
+    Ground::new(linked(&[controllers])).notices(&gpu, &LINK);
 }
 
 #[test]
