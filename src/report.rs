@@ -3,6 +3,7 @@
 //! Evidence (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
 
 mod accuracy;
+mod clip;
 mod conditions;
 pub(crate) mod document;
 mod evidence;

@@ -1,5 +1,6 @@
 //! A document as a page that needs nothing else: styles and drawings inside, no scripts.
 
+use super::clip::renumbered;
 use super::document::{Block, Cell, Document, Figure, Grid, Scale, Section, Spread, Swatch};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -47,7 +48,7 @@ pub(crate) fn html(document: &Document) -> String {
             }
         }
     };
-    page.into_string()
+    renumbered(&page.into_string())
 }
 
 fn of_section(index: usize, section: &Section) -> Markup {

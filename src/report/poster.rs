@@ -1,5 +1,6 @@
 //! Panels in one drawing that stands alone: a figure for a paper, or for a README.
 
+use super::clip::renumbered;
 use super::document::{Key, Swatch};
 use super::panel::{Panel, SIZE, escaped};
 
@@ -45,7 +46,7 @@ pub(crate) fn poster(
         svg.push_str(&panel.svg().replacen("<svg ", &place, 1));
     }
     svg.push_str("</svg>\n");
-    svg
+    renumbered(&svg)
 }
 
 /// The legend in as many lines as it takes, and where it ends, px.
