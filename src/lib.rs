@@ -28,7 +28,7 @@ pub mod draw;
 pub mod flight;
 pub mod gains;
 pub mod junit;
-mod lists;
+pub mod list;
 pub mod manifest;
 pub mod model;
 mod nearest;

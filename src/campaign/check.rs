@@ -170,12 +170,11 @@ impl Check<'_> {
         };
         if let Some((key, value)) = in_base.or_else(in_blocks) {
             let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name).collect();
-            return Err(self.invalid(
-                key,
-                value,
-                "this kind has no such parameter",
-                &format!("remove it; its parameters are {}", known.join(", ")),
-            ));
+            let remedy = match known.as_slice() {
+                [] => "remove it; it has no parameters at all".to_string(),
+                known => format!("remove it; its parameters are {}", known.join(", ")),
+            };
+            return Err(self.invalid(key, value, "this kind has no such parameter", &remedy));
         }
         self.blocks(&format!("{table}.agents"), blocks, team)?;
         parameters

@@ -90,11 +90,11 @@ impl Distribution {
         } = file;
         match (uniform, log_uniform, normal, truncated_normal, choice) {
             (Some(ends), None, None, None, None) => {
-                let (low, high) = range(*ends)?;
+                let (low, high) = range(ends.0)?;
                 Ok(Self::Uniform { low, high })
             }
             (None, Some(ends), None, None, None) => {
-                let (low, high) = range(*ends)?;
+                let (low, high) = range(ends.0)?;
                 if low > 0.0 {
                     Ok(Self::LogUniform { low, high })
                 } else {

@@ -63,6 +63,8 @@ pub(super) fn syntax(path: &Path, error: &toml::de::Error) -> CampaignError {
         "; add it".to_string()
     } else if message.starts_with("duplicate") {
         "; keep one of the two".to_string()
+    } else if message.starts_with("invalid length") {
+        "; give exactly so many values".to_string()
     } else {
         String::new()
     };
@@ -79,15 +81,19 @@ fn plainly(message: &str) -> String {
         ("unknown variant", "unknown value"),
         ("missing field", "missing key or table"),
         ("type: map", "type: a table"),
+        // A number that no whole number of the parser holds.
+        (" as i128", ""),
         ("type: sequence", "type: a list"),
-        ("an array of length", "a list of length"),
         ("expected a sequence", "expected a list"),
         ("expected f64", "expected a number without quotes or unit"),
         (
             "expected u32",
             "expected a whole number from 0 to 4294967295",
         ),
-        ("expected u64", "expected a whole number from 0"),
+        (
+            "expected u64",
+            "expected a whole number from 0 to 18446744073709551615",
+        ),
         ("expected usize", "expected a whole number from 0"),
     ]
     .into_iter()

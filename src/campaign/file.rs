@@ -7,16 +7,16 @@ mod value;
 
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
 pub use signals::*;
-pub(super) use value::in_toml;
 pub use value::{
     ChannelsFile, DistributionFile, NormalFile, Numbers, Per, TruncatedNormalFile, Value,
 };
+pub(super) use value::{in_toml, without_dust};
 
-use crate::lists::exact;
+use crate::list::List;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use value::{some_table, some_tables, table, tables};
+use value::{some_table, some_tables, some_word, table, tables, word};
 
 /// A campaign: which closed loop flies, what disturbs it, how often, and what counts as failure.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -91,10 +91,12 @@ pub struct TimeFile {
 #[serde(deny_unknown_fields)]
 pub struct AgentFile {
     /// The plant.
+    #[serde(deserialize_with = "word")]
     pub kind: AgentKind,
     /// Agents in an episode, coupled through `[coupling]` (default 1).
     pub team: Option<u32>,
     /// What the command acts through (default "full").
+    #[serde(default, deserialize_with = "some_word")]
     pub actuation: Option<ActuationKind>,
     /// Biped: a joint table (.toml) or a URDF; a relative path starts at the campaign file's folder (default: the Unitree G1).
     pub robot: Option<String>,
@@ -105,8 +107,7 @@ pub struct AgentFile {
     /// Modelled mass, kg (default 2).
     pub mass_kg: Option<f64>,
     /// Modelled principal inertias, kg m^2 (default 1.25, 1.25, 2.2).
-    #[serde(default, deserialize_with = "exact")]
-    pub inertia_kg_m2: Option<[f64; 3]>,
+    pub inertia_kg_m2: Option<List<f64, 3>>,
     /// Translational damping, N s/m (default 0.01).
     pub drag_n_s_m: Option<f64>,
     /// Rotational damping, N m s (default 0.012).
@@ -150,6 +151,7 @@ pub enum ActuationKind {
 #[serde(deny_unknown_fields)]
 pub struct ReferenceFile {
     /// Form of the reference.
+    #[serde(deserialize_with = "word")]
     pub kind: ReferenceKind,
     /// Sinusoid: mean, m or rad.
     pub center: Option<Numbers>,
@@ -170,8 +172,7 @@ pub struct ReferenceFile {
     #[serde(default, deserialize_with = "some_table")]
     pub gait: Option<GaitFile>,
     /// Waypoints: offset of each agent from the points, m.
-    #[serde(default, deserialize_with = "exact")]
-    pub offset_m: Option<Vec<[f64; 3]>>,
+    pub offset_m: Option<Vec<List<f64, 3>>>,
     /// Waypoints: bound on the speed, m/s.
     pub max_speed_m_s: Option<f64>,
     /// Waypoints: bound on the acceleration, m/s^2.
@@ -237,12 +238,12 @@ pub struct GaitFile {
     /// Standing after the last step, s (default 1.6).
     pub standing_after_s: Option<f64>,
     /// The foot that steps first (default "right").
+    #[serde(default, deserialize_with = "some_word")]
     pub first_foot: Option<FootFile>,
     /// Spacing of the points interpolated between waypoints; longer steps make wider bends, m (default 2).
     pub smoothing_step_m: Option<f64>,
     /// Centre of mass in the pelvis frame, m (default: that of the standing pose).
-    #[serde(default, deserialize_with = "exact")]
-    pub com_offset_m: Option<[f64; 3]>,
+    pub com_offset_m: Option<List<f64, 3>>,
 }
 
 /// A foot.
@@ -292,8 +293,7 @@ pub struct NamedGainsFile {
 #[serde(deny_unknown_fields)]
 pub struct WeightsFile {
     /// Weights on the tracking error [int e, e, e'].
-    #[serde(default, deserialize_with = "exact")]
-    pub q1: Option<[f64; 3]>,
+    pub q1: Option<List<f64, 3>>,
     /// Weights on the estimation error, one per observer state.
     pub q2: Option<Vec<f64>>,
     /// Weight on the feedback.
@@ -305,8 +305,7 @@ pub struct WeightsFile {
     /// Weight of the sensor fault's model error in the filter.
     pub eps2: Option<f64>,
     /// Input of the sensor fault into [int y, y, y'], B20 of (34).
-    #[serde(default, deserialize_with = "exact")]
-    pub sensor_fault_input: Option<[f64; 3]>,
+    pub sensor_fault_input: Option<List<f64, 3>>,
     /// Measurement noise of the "pid" observer.
     pub pid_nu: Option<f64>,
     /// Smoothing model: extrapolation order p.
@@ -316,8 +315,7 @@ pub struct WeightsFile {
     /// Smoothing model: spacing of the taps, s.
     pub smoothing_spacing_s: Option<f64>,
     /// Smoothing model: windows of the actuator and of the sensor fault.
-    #[serde(default, deserialize_with = "exact")]
-    pub smoothing_windows: Option<[usize; 2]>,
+    pub smoothing_windows: Option<List<usize, 2>>,
     /// Smoothing model: first row of the companion matrix instead of order and leak.
     pub smoothing_weights: Option<Vec<f64>>,
 }
@@ -333,6 +331,7 @@ pub struct InitialFile {
     /// Integral of the error at t = 0, m s or rad s.
     pub error_integral: Option<Value>,
     /// What the observers start from (default "measured").
+    #[serde(default, deserialize_with = "some_word")]
     pub observer: Option<ObserverStart>,
     /// Blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
@@ -368,6 +367,7 @@ pub struct CouplingFile {
     /// Strength of the coupling (10) or (11): N/m^2 and N m/rad^2 on the channels of a UAV, N m/rad^2 on a biped's.
     pub kappa: Value,
     /// From where x is counted (default "absolute").
+    #[serde(default, deserialize_with = "some_word")]
     pub coordinates: Option<CouplingCoordinates>,
 }
 
@@ -386,6 +386,7 @@ pub enum CouplingCoordinates {
 #[serde(deny_unknown_fields)]
 pub struct ControlFile {
     /// What the first output integrates (default "exact").
+    #[serde(default, deserialize_with = "some_word")]
     pub integral: Option<IntegralKind>,
     /// Time that a command takes to the actuator, s; whole steps (default: none).
     pub delay_s: Option<Value>,

@@ -122,11 +122,18 @@ impl Campaign {
         };
         match own.chain(of_named).find(|(_, path)| !path.is_file()) {
             Some((key, path)) => {
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let limit = if path.is_dir() {
+                    "a directory, not a file"
+                } else {
+                    "no such file"
+                };
+                // As it was written: beside the campaign.
+                let folder = self.path.parent().unwrap_or(Path::new(""));
+                let name = path.strip_prefix(folder).unwrap_or(path);
                 Err(check.invalid(
                     key,
-                    format!("{name:?}"),
-                    "no such file",
+                    format!("{:?}", name.display().to_string()),
+                    limit,
                     "name a gains.json, relative to the campaign",
                 ))
             }
@@ -249,6 +256,12 @@ impl Time {
     )]
     pub fn onset_step(&self, onset_s: f64) -> u32 {
         (onset_s / self.step_s - 1e-9).ceil().max(0.0) as u32
+    }
+
+    /// The time of a step's beginning, s, as people write it: 0.3, not 0.30000000000000004.
+    #[must_use]
+    pub fn shown_s(&self, step: u32) -> f64 {
+        file::without_dust(f64::from(step) * self.step_s)
     }
 
     /// A length of time in steps: the nearest number of them, at least one.

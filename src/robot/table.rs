@@ -2,7 +2,7 @@
 
 use super::check::{Check, Names, Place, RawJoint, tensor};
 use super::{Body, Foot, JOINTS, Joint, LEG_JOINTS, Leg, Robot, RobotError};
-use crate::lists::exact;
+use crate::list::List;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Robot, RobotError> {
     let file: RobotFile = toml::from_str(text).map_err(|error| syntax(path, &error))?;
     let names = &NAMES;
     let check = Check { path, names };
-    check.finite("gravity", &file.gravity)?;
+    check.finite("gravity", &file.gravity.0)?;
     let height_m = file.root_height_nominal;
     check.positive("root_height_nominal", height_m, "the height of the pelvis")?;
     let place = Place {
@@ -39,20 +39,20 @@ pub fn parse(text: &str, path: &Path) -> Result<Robot, RobotError> {
     };
     let inertial = Inertial {
         mass: file.base.mass,
-        com: file.base.com,
-        inertia: file.base.inertia,
+        com: file.base.com.0,
+        inertia: file.base.inertia.0,
     };
     let base = body(&check, place, &inertial)?;
     let legs = legs(&check, &file.joint, &file.foot)?;
-    check.standing("q_nominal", &legs, &file.q_nominal)?;
+    check.standing("q_nominal", &legs, &file.q_nominal.0)?;
     Ok(Robot {
         name: file.name,
         licence: file.licence,
         attribution: file.attribution,
-        gravity_m_s2: file.gravity.into(),
+        gravity_m_s2: file.gravity.0.into(),
         base,
         base_height_m: height_m,
-        standing_rad: file.q_nominal,
+        standing_rad: file.q_nominal.0,
         legs,
     })
 }
@@ -109,13 +109,13 @@ fn in_order(
     expect("foot.left_joint".into(), foot.left_joint, 5)?;
     expect("foot.right_joint".into(), foot.right_joint, 11)?;
     let [left, right] = [&rows[0], &rows[LEG_JOINTS]];
-    if left.xyz[1] <= right.xyz[1] {
+    if left.xyz.0[1] <= right.xyz.0[1] {
         return Err(check.invalid(
             format!("joint[0].xyz ({})", left.name),
-            format!("{:?}", left.xyz),
+            format!("{:?}", left.xyz.0),
             format!(
                 "the left leg has a larger y than {} at {:?}",
-                right.name, right.xyz
+                right.name, right.xyz.0
             ),
             "give the left leg first, in a pelvis frame with y to the left",
         ));
@@ -141,13 +141,13 @@ fn joint(check: &Check<'_>, i: usize, row: &JointRow) -> Result<Joint, RobotErro
     }
     let inertial = Inertial {
         mass: row.mass,
-        com: row.com,
-        inertia: row.inertia,
+        com: row.com.0,
+        inertia: row.inertia.0,
     };
     let raw = RawJoint {
-        xyz: row.xyz,
-        rpy: row.rpy,
-        axis: row.axis,
+        xyz: row.xyz.0,
+        rpy: row.rpy.0,
+        axis: row.axis.0,
         q_min: row.q_min,
         q_max: row.q_max,
         rate_max: row.qd_max,
@@ -171,9 +171,9 @@ fn body(check: &Check<'_>, place: Place<'_>, raw: &Inertial) -> Result<Body, Rob
 /// The left and the right foot.
 fn feet(check: &Check<'_>, table: &FootTable) -> Result<[Foot; 2], RobotError> {
     let corners = corners(check, table)?;
-    let ankle_offset_m = Vector3::from(table.ankle_offset);
-    let foot = |xyz, rpy_key: &str, rpy: Option<[f64; 3]>| {
-        let rpy = rpy.unwrap_or_default();
+    let ankle_offset_m = Vector3::from(table.ankle_offset.0);
+    let foot = |xyz, rpy_key: &str, rpy: Option<List<f64, 3>>| {
+        let rpy = rpy.map_or([0.0; 3], |list| list.0);
         let sole = check.pose("foot.sole_offset", xyz, rpy_key, rpy)?;
         let foot = Foot {
             ankle_offset_m,
@@ -183,9 +183,13 @@ fn feet(check: &Check<'_>, table: &FootTable) -> Result<[Foot; 2], RobotError> {
         check.foot("foot.ankle_offset", &foot)?;
         Ok(foot)
     };
-    let right_xyz = table.right_foot_xyz.unwrap_or(table.sole_offset);
+    let right_xyz = table.right_foot_xyz.unwrap_or(table.sole_offset).0;
     Ok([
-        foot(table.sole_offset, "foot.left_foot_rpy", table.left_foot_rpy)?,
+        foot(
+            table.sole_offset.0,
+            "foot.left_foot_rpy",
+            table.left_foot_rpy,
+        )?,
         foot(right_xyz, "foot.right_foot_rpy", table.right_foot_rpy)?,
     ])
 }
@@ -193,7 +197,7 @@ fn feet(check: &Check<'_>, table: &FootTable) -> Result<[Foot; 2], RobotError> {
 /// The sole's corners: those given, or those of the rectangle given.
 fn corners(check: &Check<'_>, table: &FootTable) -> Result<Vec<[f64; 2]>, RobotError> {
     let rectangle = match (table.sole_x, table.sole_y) {
-        (Some(x), Some(y)) => {
+        (Some(List(x)), Some(List(y))) => {
             for (key, range) in [("foot.sole_x", x), ("foot.sole_y", y)] {
                 check.finite(key, &range)?;
                 if range[0] >= range[1] {
@@ -213,9 +217,9 @@ fn corners(check: &Check<'_>, table: &FootTable) -> Result<Vec<[f64; 2]>, RobotE
         return Ok(rectangle);
     };
     for (i, corner) in corners.iter().enumerate() {
-        check.finite(&format!("foot.sole_corners[{i}]"), corner)?;
+        check.finite(&format!("foot.sole_corners[{i}]"), &corner.0)?;
     }
-    Ok(corners.clone())
+    Ok(corners.iter().map(|corner| corner.0).collect())
 }
 
 /// A parse error with its line and what to do.
@@ -228,6 +232,8 @@ fn syntax(path: &Path, error: &toml::de::Error) -> RobotError {
         "remove it or take one of these"
     } else if message.starts_with("missing field") {
         "add it"
+    } else if message.starts_with("invalid length") {
+        "give exactly so many values"
     } else {
         "write it as in campaigns/robots/g1_12dof.toml"
     };
@@ -248,13 +254,11 @@ struct RobotFile {
     licence: String,
     attribution: String,
     /// World frame, m/s^2.
-    #[serde(deserialize_with = "exact")]
-    gravity: [f64; 3],
+    gravity: List<f64, 3>,
     /// m
     root_height_nominal: f64,
     /// rad
-    #[serde(deserialize_with = "exact")]
-    q_nominal: [f64; JOINTS],
+    q_nominal: List<f64, JOINTS>,
     base: BaseTable,
     foot: FootTable,
     joint: Vec<JointRow>,
@@ -265,11 +269,9 @@ struct RobotFile {
 struct BaseTable {
     name: String,
     mass: f64,
-    #[serde(deserialize_with = "exact")]
-    com: [f64; 3],
+    com: List<f64, 3>,
     /// ixx, ixy, ixz, iyy, iyz, izz about the centre of mass, kg m^2.
-    #[serde(deserialize_with = "exact")]
-    inertia: [f64; 6],
+    inertia: List<f64, 6>,
 }
 
 #[derive(Deserialize)]
@@ -279,26 +281,18 @@ struct FootTable {
     left_joint: i64,
     /// Index of the right leg's last joint.
     right_joint: i64,
-    #[serde(deserialize_with = "exact")]
-    ankle_offset: [f64; 3],
+    ankle_offset: List<f64, 3>,
     /// Origin of the sole's frame in the last link's frame; the left one's if `right_foot_xyz` is given.
-    #[serde(deserialize_with = "exact")]
-    sole_offset: [f64; 3],
-    #[serde(default, deserialize_with = "exact")]
-    right_foot_xyz: Option<[f64; 3]>,
+    sole_offset: List<f64, 3>,
+    right_foot_xyz: Option<List<f64, 3>>,
     /// Angles of the sole's frame in the last link's frame (default: parallel to it).
-    #[serde(default, deserialize_with = "exact")]
-    left_foot_rpy: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "exact")]
-    right_foot_rpy: Option<[f64; 3]>,
+    left_foot_rpy: Option<List<f64, 3>>,
+    right_foot_rpy: Option<List<f64, 3>>,
     /// Bounds of the sole in its frame.
-    #[serde(default, deserialize_with = "exact")]
-    sole_x: Option<[f64; 2]>,
-    #[serde(default, deserialize_with = "exact")]
-    sole_y: Option<[f64; 2]>,
+    sole_x: Option<List<f64, 2>>,
+    sole_y: Option<List<f64, 2>>,
     /// Corners of the sole in its frame (default: those of the bounds).
-    #[serde(default, deserialize_with = "exact")]
-    sole_corners: Option<Vec<[f64; 2]>>,
+    sole_corners: Option<Vec<List<f64, 2>>>,
 }
 
 #[derive(Deserialize)]
@@ -311,22 +305,17 @@ struct JointRow {
     _source_name: Option<String>,
     /// Index of the joint before it, -1 for the pelvis.
     parent: i64,
-    #[serde(deserialize_with = "exact")]
-    xyz: [f64; 3],
+    xyz: List<f64, 3>,
     /// Roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
-    #[serde(deserialize_with = "exact")]
-    rpy: [f64; 3],
-    #[serde(deserialize_with = "exact")]
-    axis: [f64; 3],
+    rpy: List<f64, 3>,
+    axis: List<f64, 3>,
     q_min: f64,
     q_max: f64,
     qd_max: f64,
     tau_max: f64,
     mass: f64,
-    #[serde(deserialize_with = "exact")]
-    com: [f64; 3],
-    #[serde(deserialize_with = "exact")]
-    inertia: [f64; 6],
+    com: List<f64, 3>,
+    inertia: List<f64, 6>,
     armature: f64,
     /// Another source's armature; not used.
     armature_alt: Option<f64>,

@@ -1,6 +1,7 @@
 //! `[[strata]]`, `[sampling]`, `[stop]` and `[[require]]`: which episodes meet what, how their numbers are drawn, when enough
 //! is known, and what has to be.
 
+use super::value::some_word;
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -24,6 +25,7 @@ pub struct StratumFile {
 #[serde(deny_unknown_fields)]
 pub struct SamplingFile {
     /// How the random numbers of the episodes are chosen (default "independent").
+    #[serde(default, deserialize_with = "some_word")]
     pub design: Option<DesignFile>,
     /// Independent repetitions of the design, whose scatter gives its intervals (default 8).
     pub replicates: Option<u32>,

@@ -1,6 +1,6 @@
 //! `[[disturbance]]` and `[[fault]]` as they are written.
 
-use super::value::{ChannelsFile, Value, some_tables};
+use super::value::{ChannelsFile, Value, some_tables, some_word, word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct DisturbanceFile {
     /// Form of the disturbance.
+    #[serde(deserialize_with = "word")]
     pub kind: DisturbanceKind,
     /// Amplitude or constant value, N or N m.
     pub amplitude: Option<Value>,
@@ -29,6 +30,7 @@ pub struct DisturbanceFile {
     /// Turbulence: mean wind 6 m above the ground, m/s.
     pub wind_m_s: Option<Value>,
     /// Turbulence: instead of wind_m_s, that of light (15 kn), moderate (30 kn) or severe (45 kn) turbulence.
+    #[serde(default, deserialize_with = "some_word")]
     pub intensity: Option<IntensityKind>,
     /// Turbulence: height above the ground, m; 3 to 305.
     pub altitude_m: Option<Value>,
@@ -84,14 +86,17 @@ pub struct FaultFile {
     /// Its name in `[[strata]]` and in what people read (default: target and kind, such as "actuator bias").
     pub name: Option<String>,
     /// What fails.
+    #[serde(deserialize_with = "word")]
     pub target: FaultTarget,
     /// How it fails.
+    #[serde(deserialize_with = "word")]
     pub kind: FaultKind,
     /// Probability that an agent has this fault (default 1).
     pub probability: Option<f64>,
     /// The channels that fail (default "all").
     pub channels: Option<ChannelsFile>,
     /// Network: which way is struck (default "command").
+    #[serde(default, deserialize_with = "some_word")]
     pub link: Option<Link>,
     /// Beginning, s (default 0).
     pub onset_s: Option<Value>,

@@ -1,10 +1,10 @@
 //! Values that have several forms, read by hand: serde's untagged enums would hide what is wrong with a value, and its
 //! structs would take a list for a table.
 
-use crate::lists::exact;
+use crate::list::List;
 use schemars::JsonSchema;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::value::{Error as PlainError, MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::marker::PhantomData;
@@ -36,11 +36,9 @@ pub enum Value {
 #[serde(deny_unknown_fields)]
 pub struct DistributionFile {
     /// [low, high]
-    #[serde(default, deserialize_with = "exact")]
-    pub uniform: Option<[f64; 2]>,
+    pub uniform: Option<List<f64, 2>>,
     /// [low, high], both positive; uniform in the logarithm.
-    #[serde(default, deserialize_with = "exact")]
-    pub log_uniform: Option<[f64; 2]>,
+    pub log_uniform: Option<List<f64, 2>>,
     /// Normal.
     #[serde(default, deserialize_with = "some_table")]
     pub normal: Option<NormalFile>,
@@ -52,6 +50,7 @@ pub struct DistributionFile {
     /// Relative weights of `choice` (default: equal).
     pub weights: Option<Vec<f64>>,
     /// Drawn once per "episode", "agent" or "channel".
+    #[serde(default, deserialize_with = "some_word")]
     pub per: Option<Per>,
 }
 
@@ -99,6 +98,10 @@ pub enum ChannelsFile {
     Word(String),
     /// Channel numbers from 1.
     Numbers(Vec<u32>),
+    /// A list with something else in it, as it was written: no channels, but the names of the agent's are known only where it is
+    /// refused.
+    #[schemars(skip)]
+    Others(Vec<String>),
 }
 
 /// A value as a campaign file would say it.
@@ -138,8 +141,8 @@ impl fmt::Display for DistributionFile {
             ])
         };
         let forms: Vec<String> = [
-            ("uniform", self.uniform.map(|ends| list(&ends))),
-            ("log_uniform", self.log_uniform.map(|ends| list(&ends))),
+            ("uniform", self.uniform.map(|ends| list(&ends.0))),
+            ("log_uniform", self.log_uniform.map(|ends| list(&ends.0))),
             ("normal", self.normal.as_ref().map(normal)),
             (
                 "truncated_normal",
@@ -163,6 +166,11 @@ pub(in crate::campaign) fn in_toml(number: f64) -> String {
     } else {
         format!("{number:?}")
     }
+}
+
+/// A computed number without the dust of binary fractions: 12 digits of it.
+pub(in crate::campaign) fn without_dust(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 impl Per {
@@ -234,6 +242,36 @@ pub(super) fn some_tables<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     tables(deserializer).map(Some)
 }
 
+/// One of several words; anything else is refused with all of them.
+pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    struct WordVisitor<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for WordVisitor<T> {
+        type Value = T;
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            // Serde tells the words of an enum only to whom takes none of them.
+            let none: Result<T, PlainError> = T::deserialize("".into_deserializer());
+            let said = none.err().map(|error| error.to_string());
+            let words = said
+                .as_deref()
+                .and_then(|said| said.split_once(", expected "));
+            formatter.write_str(words.map_or("a word in quotes", |(_, words)| words))
+        }
+        fn visit_str<E: Error>(self, word: &str) -> Result<T, E> {
+            T::deserialize(word.into_deserializer())
+        }
+    }
+    deserializer.deserialize_any(WordVisitor(PhantomData))
+}
+
+/// A word that may be absent.
+pub(super) fn some_word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    word(deserializer).map(Some)
+}
+
 /// Visits of a number, however it is written.
 macro_rules! numbers {
     ($number:expr) => {
@@ -288,6 +326,36 @@ impl<'de> Deserialize<'de> for Numbers {
     }
 }
 
+/// An entry of a list of channels.
+enum ChannelFile {
+    Number(u32),
+    /// No channel's number, as it was written.
+    Other(String),
+}
+
+impl<'de> Deserialize<'de> for ChannelFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ChannelVisitor;
+        impl Visitor<'_> for ChannelVisitor {
+            type Value = ChannelFile;
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("a channel's number, from 1")
+            }
+            fn visit_i64<E: Error>(self, value: i64) -> Result<ChannelFile, E> {
+                let other = |_| ChannelFile::Other(value.to_string());
+                Ok(u32::try_from(value).map_or_else(other, ChannelFile::Number))
+            }
+            fn visit_f64<E: Error>(self, value: f64) -> Result<ChannelFile, E> {
+                Ok(ChannelFile::Other(in_toml(value)))
+            }
+            fn visit_str<E: Error>(self, word: &str) -> Result<ChannelFile, E> {
+                Ok(ChannelFile::Other(format!("{word:?}")))
+            }
+        }
+        deserializer.deserialize_any(ChannelVisitor)
+    }
+}
+
 impl<'de> Deserialize<'de> for ChannelsFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct ChannelsVisitor;
@@ -302,7 +370,20 @@ impl<'de> Deserialize<'de> for ChannelsFile {
                 Ok(ChannelsFile::Word(word.to_string()))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<ChannelsFile, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(ChannelsFile::Numbers)
+                let list: Vec<ChannelFile> = Vec::deserialize(SeqAccessDeserializer::new(list))?;
+                let number = |channel: &ChannelFile| match channel {
+                    ChannelFile::Number(number) => Some(*number),
+                    ChannelFile::Other(_) => None,
+                };
+                let numbers: Option<Vec<u32>> = list.iter().map(number).collect();
+                let written = |channel: &ChannelFile| match channel {
+                    ChannelFile::Number(number) => number.to_string(),
+                    ChannelFile::Other(text) => text.clone(),
+                };
+                Ok(numbers.map_or_else(
+                    || ChannelsFile::Others(list.iter().map(written).collect()),
+                    ChannelsFile::Numbers,
+                ))
             }
         }
         deserializer.deserialize_any(ChannelsVisitor)

@@ -4,7 +4,7 @@ use super::super::check::{Bounds, Check};
 use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::{Agent, Biped, RobotFile, Uav};
-use crate::robot::{self, Robot};
+use crate::robot::{self, Robot, RobotError};
 use std::path::Path;
 
 /// The paper's UAV, section V.
@@ -60,7 +60,9 @@ impl Check<'_> {
         let text = match (text, &file.robot) {
             (Some(text), _) => text.to_string(),
             (None, None) => robot::G1.to_string(),
-            (None, Some(_)) => Robot::text(&path).map_err(Box::new)?,
+            (None, Some(name)) => {
+                Robot::text(&path).map_err(|error| self.no_robot(name, &error))?
+            }
         };
         let file = RobotFile { path, text };
         Ok(Biped {
@@ -68,6 +70,21 @@ impl Check<'_> {
             robot: Robot::parse(&file.text, &file.path).map_err(Box::new)?,
             file,
         })
+    }
+
+    /// A robot's file that is none, by the key that names it; what is wrong within one is said with the file's own name.
+    fn no_robot(&self, name: &str, error: &RobotError) -> CampaignError {
+        let (limit, remedy) = match error {
+            RobotError::Read { source, .. } => (
+                format!("cannot be read ({source})"),
+                "name an existing robot file, relative to the campaign",
+            ),
+            _ => (
+                "a robot file ends in .toml (joint table) or .urdf".to_string(),
+                "rename it or name another",
+            ),
+        };
+        self.invalid("agent.robot", format!("{name:?}"), &limit, remedy)
     }
 
     fn uav(&self, file: &AgentFile) -> Result<Uav, CampaignError> {
@@ -100,7 +117,9 @@ impl Check<'_> {
         let number = |key: &str, value: Option<f64>, default: f64, bounds: Bounds| {
             self.number(key, value.unwrap_or(default), bounds)
         };
-        let inertia_kg_m2 = file.inertia_kg_m2.unwrap_or(PAPER_INERTIA_KG_M2);
+        let inertia_kg_m2 = file
+            .inertia_kg_m2
+            .map_or(PAPER_INERTIA_KG_M2, |list| list.0);
         for (axis, inertia) in inertia_kg_m2.into_iter().enumerate() {
             let key = format!("agent.inertia_kg_m2[{axis}]");
             self.number(&key, inertia, Bounds::Positive)?;

@@ -208,7 +208,7 @@ impl Check<'_> {
         let gait = gait(file);
         match file.com_offset_m {
             None => Walk::plan(robot, points, &gait),
-            Some(offset_m) => Walk::plan_with_com_offset(robot, points, &gait, offset_m),
+            Some(offset_m) => Walk::plan_with_com_offset(robot, points, &gait, offset_m.0),
         }
         .map_err(|error| match error {
             WalkError::Gait {
@@ -263,7 +263,7 @@ impl Check<'_> {
         )?;
         self.blocks("reference.offset_m", file.offset_m.as_deref(), team)?;
         for (agent, offset) in file.offset_m.iter().flatten().enumerate() {
-            for (axis, metres) in offset.iter().enumerate() {
+            for (axis, metres) in offset.0.iter().enumerate() {
                 let key = format!("reference.offset_m[{agent}][{axis}]");
                 self.number(&key, *metres, Bounds::Any)?;
             }
@@ -273,7 +273,7 @@ impl Check<'_> {
                 let offset = file
                     .offset_m
                     .as_ref()
-                    .map_or([0.0; 3], |offsets| offsets[agent]);
+                    .map_or([0.0; 3], |offsets| offsets[agent].0);
                 let own: Vec<[f64; 3]> = points
                     .iter()
                     .map(|point| std::array::from_fn(|axis| point[axis] + offset[axis]))

@@ -114,19 +114,25 @@ impl Check<'_> {
         let Some(intensity) = file.intensity else {
             return Ok(Cow::Borrowed(file));
         };
-        if file.kind != DisturbanceKind::Dryden || file.wind_m_s.is_some() {
-            return Err(self.invalid(
-                format!("{table}.intensity"),
-                "given",
-                "it stands for the wind_m_s of turbulence",
-                "remove it, or remove wind_m_s",
-            ));
-        }
-        let wind_kn = match intensity {
-            IntensityKind::Light => 15.0,
-            IntensityKind::Moderate => 30.0,
-            IntensityKind::Severe => 45.0,
+        let (name, wind_kn) = match intensity {
+            IntensityKind::Light => ("light", 15.0),
+            IntensityKind::Moderate => ("moderate", 30.0),
+            IntensityKind::Severe => ("severe", 45.0),
         };
+        let refused = |remedy: &str| {
+            Err(self.invalid(
+                format!("{table}.intensity"),
+                format!("{name:?}"),
+                "it stands for the wind_m_s of turbulence",
+                remedy,
+            ))
+        };
+        if file.kind != DisturbanceKind::Dryden {
+            return refused("remove it, or set kind = \"dryden\"");
+        }
+        if file.wind_m_s.is_some() {
+            return refused("remove it, or remove wind_m_s");
+        }
         Ok(Cow::Owned(DisturbanceFile {
             wind_m_s: Some(Value::Number(wind_kn * KNOT_M_S)),
             ..file.clone()
@@ -312,7 +318,7 @@ impl Check<'_> {
         let last = supports.map(|(_, high)| high).fold(0.0, f64::max);
         match value {
             Some(value) if time.onset_step(last) >= time.steps => {
-                let last_step_s = f64::from(time.steps - 1) * time.step_s;
+                let last_step_s = time.shown_s(time.steps - 1);
                 Err(self.invalid(
                     key,
                     value,
@@ -397,11 +403,13 @@ impl Check<'_> {
                 ))
             }
             Some(other) => {
+                let names = (1..).zip(&self.channels);
+                let names: Vec<String> = names.map(|(k, name)| format!("{k} {name}")).collect();
                 let limit = format!(
-                    "\"all\", \"one\", or a list of different channel numbers from 1 ({})",
-                    self.channels.join(", ")
+                    "\"all\", \"one\", or a list of different channel numbers from 1 to {count}: {}",
+                    names.join(", ")
                 );
-                Err(self.invalid(key, shown(other), &limit, "correct it"))
+                Err(self.invalid(key, shown(other), &limit, "give such a list"))
             }
         }
     }
@@ -412,5 +420,6 @@ fn shown(channels: &ChannelsFile) -> String {
     match channels {
         ChannelsFile::Word(word) => format!("{word:?}"),
         ChannelsFile::Numbers(numbers) => format!("{numbers:?}"),
+        ChannelsFile::Others(list) => format!("[{}]", list.join(", ")),
     }
 }

@@ -148,10 +148,14 @@ impl Check<'_> {
                 "remove either",
             ));
         }
-        design.q1 = file.q1.unwrap_or(design.q1);
+        design.q1 = file.q1.map_or(design.q1, |list| list.0);
         design.q2 = file.q2.unwrap_or(design.q2);
-        design.sensor_fault_input = file.sensor_fault_input.unwrap_or(design.sensor_fault_input);
-        design.smoothing.windows = file.smoothing_windows.unwrap_or(design.smoothing.windows);
+        design.sensor_fault_input = file
+            .sensor_fault_input
+            .map_or(design.sensor_fault_input, |list| list.0);
+        design.smoothing.windows = file
+            .smoothing_windows
+            .map_or(design.smoothing.windows, |list| list.0);
         if let SmoothingRule::Leaky { order, leak_per_s } = &mut design.smoothing.rule {
             *order = file.smoothing_order.unwrap_or(*order);
             replace(leak_per_s, file.smoothing_leak_per_s);

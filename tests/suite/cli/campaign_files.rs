@@ -4,6 +4,9 @@
 //! ` && ` separates changes, and `\n` stands for a line break.
 
 use super::{Place, smoke};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use urts_mc::campaign::Campaign;
 
 /// Each case is refused with 2, the file's name and the words, in one paragraph, and nothing is written.
 pub(super) fn all_refused(table: &str) {
@@ -67,12 +70,20 @@ duration_s = 6.0  => duration_s = "6 s"  :: line 8, column 14 ~ \n8 | duration_s
 episodes = 3      => episodes = 3.5      :: line 4, column 12 ~ 3.5 ~ expected a whole number from 0
 episodes = 3      => episodes = -3       :: line 4, column 12 ~ -3 ~ expected a whole number from 0
 episodes = 3      => episodes = 5000000000 :: 5000000000 ~ expected a whole number from 0 to 4294967295
-seed = 2026       => seed = -1           :: line 3 ~ -1 ~ expected a whole number from 0
+seed = 2026       => seed = -1           :: line 3 ~ -1 ~ expected a whole number from 0 to 18446744073709551615
+seed = 2026       => seed = 18446744073709551616 :: integer `18446744073709551616`, expected a whole number from 0 to 18446744073709551615
+kind = "uav"      => kind = 3            :: line 13, column 8 ~ integer `3`, expected `uav` or `biped`
+"full"            => { full = 1 }        :: line 15, column 13 ~ a table, expected one of `full`, `thrust`, `limited`
+kind = "sine"     => kind = 3            :: integer `3`, expected one of `sine`, `constant`, `gust-1-cosine`
+{ choice = [0.0, 1.0] } => { choice = [0.0, 1.0], per = 1 } :: integer `1`, expected one of `episode`, `agent`, `channel`
 kappa =           => kappa = true #      :: kappa = true ~ ^^^^ ~ a number, a list with one value per channel, or a distribution such as
 max_error = 1.5   => max_error = "big"   :: "big" ~ expected a number, or a list with one number per channel
 max_error = 1.5   => max_error = [1.0, "b"] :: column 19 ~ "b" ~ expected a number
 channels = "one"  => channels = 3        :: channels = 3 ~ a list of channel numbers from 1 such as [1, 2]
-channels = "one"  => channels = ["z"]    :: "z" ~ expected a whole number
+channels = "one"  => channels = ["z"]    :: fault[0].channels (line 55) = ["z"]: "all", "one", or a list of different channel numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw; give such a list
+channels = "one"  => channels = [-1, 1]  :: fault[0].channels (line 55) = [-1, 1] ~ numbers from 1 to 6
+channels = "one"  => channels = [1, 2.5] :: fault[0].channels (line 55) = [1, 2.5] ~ numbers from 1 to 6
+channels = "one"  => channels = [[1]]    :: line 55, column 13 ~ expected a channel's number, from 1
 probability = 0.25 => probability = { uniform = [0, 1] } :: probability ~ a table, expected a number
 "full"            => "full"\ninertia_kg_m2 = [1.0, 1.0] :: inertia_kg_m2 ~ expected a list of length 3
 "full"            => "full"\ninertia_kg_m2 = [1.0, 1.0, 1.0, 9.0] :: inertia_kg_m2 ~ 4 ~ expected a list of length 3
@@ -113,7 +124,7 @@ step_s = 0.002    => step_s = 1e-7       :: time.duration_s (line 8) = 6.0 ~ 838
 settle_s = 2.0    => settle_s = -1.0     :: time.settle_s (line 10) = -1.0: must not be negative
 onset_s = { uniform = [2.5, 4.0] } => onset_s = -1 :: fault[0].onset_s (line 56) = -1.0: must not be negative
 max_error = 1.5   => max_error = 0.0     :: verdict.max_error (line 69) = 0.0: must be positive
-channels = "one"  => channels = [0, 7]   :: fault[0].channels (line 55) = [0, 7] ~ different channel numbers from 1 (x, y, z, roll, pitch, yaw)
+channels = "one"  => channels = [0, 7]   :: fault[0].channels (line 55) = [0, 7] ~ different channel numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw
 channels = "one"  => channels = [2, 2]   :: fault[0].channels (line 55) = [2, 2] ~ different channel numbers
 channels = "one"  => channels = "two"    :: fault[0].channels (line 55) = "two" ~ "all", "one"
 name = "smoke"    => name = "../smoke"   :: name (line 2) = "../smoke": a name consists of letters, digits, '-' and '_'; rename it
@@ -217,6 +228,7 @@ fn a_contradiction_is_refused() {
     all_refused(
         r#"
 onset_s = { uniform = [2.5, 4.0] } => onset_s = { uniform = [2.5, 40.0] } :: fault[0].onset_s (line 56) = { uniform = [2.5, 40.0] } ~ by the last step at 5.998 s; begin it earlier
+onset_s = { uniform = [2.5, 4.0] } => onset_s = 40.0 && duration_s = 6.0 => duration_s = 12.0 :: fault[0].onset_s (line 56) = 40.0 ~ by the last step at 11.998 s; begin it earlier
 onset_s = { uniform = [2.5, 4.0] } => onset_s = 5.999 :: fault[0].onset_s (line 56) = 5.999 ~ before the end
 settle_s = 2.0    => settle_s = 6.0      :: time.settle_s (line 10) = 6.0 ~ before the end at 6 s; start them earlier
 "full"            => "full"\nmax_thrust_n = 10.0 :: agent.max_thrust_n (line 16) = 10.0 ~ only the actuation "thrust" ~ set agent.actuation = "thrust"
@@ -227,7 +239,9 @@ target = "actuator" => target = "sensor" :: fault[0].kind (line 53) = "loss-of-e
 target = "sensor" => target = "actuator" :: fault[1].kind (line 61) = "smoothed-square" ~ the target "actuator" has loss-of-effectiveness, bias, stuck, float
 smoothing = 0.1   => smoothing = 0.1\nmagnitude = 1.0 :: fault[1].magnitude (line 66) = 1.0 ~ no such parameter; remove it ~ period_s
 smoothing = 0.1   => smoothing = 0.1\nagents = [{}, { std = 1.0 }, {}] :: fault[1].agents[1].std (line 66) = 1.0 ~ no such parameter
+kind = "loss-of-effectiveness" => kind = "stuck" :: fault[0].magnitude (line 57) = { uniform = [0.1, 0.5] }: this kind has no such parameter; remove it; it has no parameters at all
 period_s = { uniform = [6.0, 12.0] } =>  :: fault[1].period_s (line 59) = absent ~ needs it; add it
+kind = "sine"     => kind = "sine"\nintensity = "light" :: disturbance[0].intensity (line 47) = "light": it stands for the wind_m_s of turbulence; remove it, or set kind = "dryden"
 kind = "sine"     => kind = "constant"   :: disturbance[0].frequency_rad_s (line 48) ~ no such parameter ~ its parameters are amplitude
 frequency_rad_s = { uniform = [1.0, 5.0] } => frequency_rad_s = 300.0 :: disturbance[0].frequency_rad_s (line 48) = up to 300.0 rad/s ~ steps of 0.002 s resolve at most 250.0 rad/s ~ shorten time.step_s
 period_s = { uniform = [6.0, 12.0] } => period_s = 0.01 :: fault[1].period_s (line 64) = up to 628.3 rad/s ~ resolve at most 250.0 rad/s; make it slower
@@ -245,6 +259,107 @@ kind = "sinusoid" => kind = "waypoints"  :: reference.amplitude (line 21) ~ "way
 preset = "uav-paper" => gains = "g.json" :: synthesis.gains (line 35) = "g.json": no such file; name a gains.json, relative to the campaign
 "#,
     );
+}
+
+/// The keys of a schema that hold lists of a fixed length, with that length.
+fn fixed_lists(schema: &Value, key: &str, found: &mut BTreeSet<(String, u64)>) {
+    if let (Some(least), Some(most)) = (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+        assert_eq!(least, most, "{key}");
+        found.insert((key.to_string(), most));
+    }
+    match schema {
+        Value::Object(parts) => {
+            for (name, part) in parts {
+                // A property has the key of its name; anything else is a part of it.
+                if name == "properties" {
+                    let properties = part.as_object().unwrap();
+                    properties
+                        .iter()
+                        .for_each(|(key, part)| fixed_lists(part, key, found));
+                } else {
+                    fixed_lists(part, key, found);
+                }
+            }
+        }
+        Value::Array(parts) => parts.iter().for_each(|part| fixed_lists(part, key, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_list_of_fixed_length_takes_neither_more_nor_fewer_values() {
+    // (what is replaced, its replacement with LIST in it, the key, values that are enough)
+    let preset = "\"uav-paper\"";
+    let synthesis = |key: &str| format!("{preset}\\nposition.{key} = LIST");
+    let scale = "mass_scale = { uniform = [0.8, 1.2] }";
+    let cases: [(&str, String, &str, &[&str]); 8] = [
+        (
+            "\"full\"",
+            "\"full\"\\ninertia_kg_m2 = LIST".into(),
+            "inertia_kg_m2",
+            &["1.25", "1.25", "2.2"],
+        ),
+        (
+            scale,
+            "mass_scale = { uniform = LIST }".into(),
+            "uniform",
+            &["0.8", "1.2"],
+        ),
+        (
+            scale,
+            "mass_scale = { log_uniform = LIST }".into(),
+            "log_uniform",
+            &["0.8", "1.2"],
+        ),
+        (
+            "kind = \"sinusoid\"",
+            "kind = \"sinusoid\"\\noffset_m = [[0.0, 0.0, 0.0], LIST]".into(),
+            "offset_m",
+            &["0.0", "1.0", "2.0"],
+        ),
+        (
+            "[synthesis]",
+            "[reference.gait]\\ncom_offset_m = LIST\\n[synthesis]".into(),
+            "com_offset_m",
+            &["0.0", "0.0", "0.1"],
+        ),
+        (preset, synthesis("q1"), "q1", &["1.0", "1.0", "1.0"]),
+        (
+            preset,
+            synthesis("sensor_fault_input"),
+            "sensor_fault_input",
+            &["0.0", "1.0", "0.0"],
+        ),
+        (
+            preset,
+            synthesis("smoothing_windows"),
+            "smoothing_windows",
+            &["4", "4"],
+        ),
+    ];
+    // No such key is forgotten.
+    let mut known = BTreeSet::new();
+    fixed_lists(&Campaign::schema(), "", &mut known);
+    let of_case = |case: &(&str, String, &str, &[&str])| (case.2.to_string(), case.3.len() as u64);
+    assert_eq!(cases.iter().map(of_case).collect::<BTreeSet<_>>(), known);
+    for (old, new, key, enough) in &cases {
+        let with = |values: &[&str]| new.replace("LIST", &format!("[{}]", values.join(", ")));
+        let more = [enough, &[enough[0]] as &[_]].concat();
+        for wrong in [&more[..], &enough[1..], &[]] {
+            all_refused(&format!(
+                "{old} => {} :: {key} = ~ ^^ ~ invalid length {}, expected a list of length {}; give exactly so many values",
+                with(wrong),
+                wrong.len(),
+                enough.len()
+            ));
+        }
+        // So many are a list, whatever else may be wrong with it here.
+        let text = smoke(&[(old, &with(enough).replace("\\n", "\n"))]);
+        let said = Place::with(&text)
+            .program(&["check", "c.toml", "--quiet"])
+            .stderr;
+        assert!(!said.contains("invalid length"), "{key}: {said}");
+    }
 }
 
 #[test]

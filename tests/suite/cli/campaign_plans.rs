@@ -19,7 +19,8 @@ magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fau
 [verdict] => [[fault]]\ntarget = "plant"\nkind = "payload"\nmass_kg = { uniform = [0.0, 1.0], per = "channel" }\noffset_x_m = 0.0\noffset_y_m = 0.0\n[verdict] :: fault[2].mass_kg.per (line 71) = "channel" ~ a quantity of the agent
 [verdict] => [[fault]]\ntarget = "plant"\nkind = "mass"\nchannels = "one"\nmagnitude = 0.1\n[verdict] :: fault[2].channels (line 71) = "one" ~ the plant changes as a whole
 [verdict] => [[fault]]\ntarget = "sensor"\nkind = "oscillatory"\namplitude = 1.0\nfrequency_rad_s = 300.0\n[verdict] :: fault[2].frequency_rad_s (line 72) = up to 300.0 rad/s ~ at most 250.0 rad/s
-[verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\nwind_m_s = 5.0\naltitude_m = 10.0\nairspeed_m_s = 5.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].intensity (line 70) = given ~ remove it, or remove wind_m_s
+[verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\nwind_m_s = 5.0\naltitude_m = 10.0\nairspeed_m_s = 5.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].intensity (line 70) = "light" ~ remove it, or remove wind_m_s
+[verdict] => [[disturbance]]\nkind = "dryden"\nintensity = 3\n[verdict] :: intensity = 3 ~ integer `3`, expected one of `light`, `moderate`, `severe`
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 1.0\nairspeed_m_s = 5.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].altitude_m (line 71) = 1.0 ~ within [3, 305]
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 10.0\nairspeed_m_s = 0.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].airspeed_m_s (line 72) = 0.0 ~ at least
 [verdict] => [[disturbance]]\nkind = "gust-1-cosine"\nspeed_m_s = 5.0\ngain_n_s_m = 1.0\nonset_s = 7.0\nduration_s = 1.0\n[verdict] :: disturbance[1].onset_s (line 72) = 7.0 ~ before the end

@@ -146,6 +146,19 @@ fn a_gains_file_of_another_form_is_refused() {
 }
 
 #[test]
+fn a_directory_in_the_place_of_gains_is_called_one_and_named_as_it_is_written() {
+    let (place, _) = with_gains();
+    std::fs::create_dir_all(place.path("of/mine")).unwrap();
+    place.write("d.toml", smoke(&[(PRESET, "gains = \"of/mine\"")]));
+    let words =
+        "synthesis.gains (line 35) = \"of/mine\": a directory, not a file; name a gains.json";
+    place.refuses(&["check", "d.toml"], 2, &[words]);
+    place.write("d.toml", smoke(&[(PRESET, "gains = \"of/none.json\"")]));
+    let words = "synthesis.gains (line 35) = \"of/none.json\": no such file; name a gains.json";
+    place.refuses(&["check", "d.toml"], 2, &[words]);
+}
+
+#[test]
 fn a_replay_needs_nothing_but_the_directory_of_the_run() {
     let (place, _) = with_gains();
     place.succeeds(&["run", "d.toml", "--out", "out"]);

@@ -231,6 +231,44 @@ fn unknown_missing_and_mistyped_keys_are_refused_with_their_line() {
 }
 
 #[test]
+fn lists_take_neither_more_nor_fewer_values() {
+    // With the keys of the right foot, which the shipped table takes from the left one.
+    let whole = text("g1_12dof").replace(
+        "sole_offset = ",
+        "right_foot_xyz = [0.0, 0.0, -0.035]\nleft_foot_rpy = [0.0, 0.0, 0.0]\nright_foot_rpy = [0.0, 0.0, 0.0]\nsole_offset = ",
+    );
+    parse(&whole).unwrap();
+    let mut keys = std::collections::BTreeSet::new();
+    for (at, _) in whole.match_indices(" = [") {
+        let (key, rest) = whole.split_at(at);
+        let key = key.rsplit('\n').next().unwrap();
+        let list = &rest[3..3 + rest[3..].find(']').unwrap()];
+        // The innermost list: that of the first corner.
+        let first = list.trim_start_matches('[');
+        let opening = at + 3 + list.len() - first.len();
+        let (before, after) = (&whole[..opening], &whole[opening..]);
+        let count = first.split(',').count();
+        let fewer = first.split_once(',').unwrap().0.len() + 1;
+        for (changed, given) in [
+            (format!("{before}0.5, {after}"), count + 1),
+            (format!("{before}{}", &after[fewer..]), count - 1),
+        ] {
+            let said = parse(&changed).unwrap_err().to_string();
+            let expected = format!(
+                "invalid length {given}, expected a list of length {count}; give exactly so many values"
+            );
+            assert!(
+                said.starts_with("robots/x.toml: line ") && said.ends_with(&expected),
+                "{key}: {said}"
+            );
+        }
+        keys.insert(key);
+    }
+    // gravity, q_nominal, com, inertia, xyz, rpy, axis, and eight of the feet.
+    assert_eq!(keys.len(), 15, "{keys:?}");
+}
+
+#[test]
 fn unreadable_files_and_other_formats_are_refused() {
     let missing = Robot::load(Path::new("robots/none.toml")).unwrap_err();
     assert!(matches!(missing, RobotError::Read { .. }));
