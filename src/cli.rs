@@ -1,6 +1,8 @@
 //! The commands.
 
 mod arguments;
+mod completions;
+mod junit;
 mod progress;
 mod terminal;
 
@@ -13,11 +15,9 @@ use arguments::{
     BackendChoice, CheckArguments, Command, DevicesArguments, Overrides, PlanArguments,
     PrecisionChoice, ReplayArguments, RunArguments, SimdChoice, SynthesizeArguments,
 };
-use clap::CommandFactory;
-use clap_complete::Shell;
+use completions::completions;
 use progress::Shown;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use terminal::{print, print_json};
 use urts_mc::backend::cpu::{Precision, Simd};
@@ -25,12 +25,11 @@ use urts_mc::backend::gpu::{Tuning, adapters};
 use urts_mc::campaign::Campaign;
 use urts_mc::flight::{Backend, Settings};
 use urts_mc::gains::GainSet;
-use urts_mc::junit::{junit, junit_of_error};
-use urts_mc::output::{OutputDir, OutputError, OutputFile, is_of_a_run};
+use urts_mc::output::{OutputDir, OutputFile};
 use urts_mc::paper::{claim_dir, paper};
 use urts_mc::replay::replay;
 use urts_mc::report::{report, trace};
-use urts_mc::run::{Extras, Findings, RunError, run};
+use urts_mc::run::{Extras, Findings, run};
 use urts_mc::shortcomings::{shortcoming, unmet};
 use urts_mc::synthesis::{Preset, synthesize};
 
@@ -39,7 +38,23 @@ use urts_mc::synthesis::{Preset, synthesize};
 /// # Errors
 /// Whatever stops it, with the exit code that it means.
 pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
-    match arguments.command {
+    let elsewhere = elsewhere(&arguments.command);
+    carry_out(arguments.command).map_err(|failure| failure.of_place(elsewhere))
+}
+
+/// What to do where a command cannot write what it has to.
+fn elsewhere(command: &Command) -> &'static str {
+    match command {
+        Command::Report { .. } => {
+            "a report stands beside the tables of its run: make their directory writable, or copy it"
+        }
+        Command::Replay(_) => "give another file with --out",
+        _ => "give another directory with --out",
+    }
+}
+
+fn carry_out(command: Command) -> Result<Code, Failure> {
+    match command {
         Command::Run(arguments) => run_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
@@ -60,7 +75,10 @@ pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
             print_json(&Campaign::schema())?;
             Ok(Code::Done)
         }
-        Command::Completions { shell } => completions_command(shell),
+        Command::Completions { shell } => {
+            print(&completions(shell))?;
+            Ok(Code::Done)
+        }
     }
 }
 
@@ -76,113 +94,56 @@ impl Overrides {
 }
 
 fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
-    let campaign = arguments.overrides.load().inspect_err(|refused| {
-        // The file of an earlier run must not say that this one passed.
-        let out = arguments.out.clone().unwrap_or_default();
-        let file = arguments.junit_file(&out).ok().flatten();
-        if let Some(JunitFile(file)) = file.filter(|file| file.0.has_place()) {
-            let name = arguments.overrides.campaign.display().to_string();
-            let text = junit_of_error(&name, refused.error.to_string());
-            // Of two errors the campaign's is told.
-            let _ = text.map(|text| file.write(text.as_bytes()));
-        }
-    })?;
-    let settings = arguments.settings()?;
-    let path = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| Path::new("reports").join(&campaign.name));
-    let out = OutputDir::claim(&path, &campaign, arguments.overwrite)?;
-    let report = arguments.junit_file(&path)?;
-    let extras = Extras {
-        csv: arguments.csv,
-        cross_check: arguments.cross_check,
+    let campaign = arguments.overrides.load();
+    let of_campaign = || Some(Path::new("reports").join(&campaign.as_ref().ok()?.name));
+    let out = arguments.out.clone().or_else(of_campaign);
+    // Before anything else that may go wrong: what an earlier run left must not tell of this one.
+    let report = arguments.junit_file(out.as_deref())?;
+    let file = &arguments.overrides.campaign;
+    let name = match &campaign {
+        Ok(campaign) => campaign.name.clone(),
+        Err(_) => file.file_stem().unwrap_or_default().display().to_string(),
     };
-
-    let shown = Shown::of_run(&campaign, arguments.quiet);
-    let findings = run(&campaign, &settings, &out, extras, &|at| shown.tell(at));
-    drop(shown);
-    let reported = match &report {
-        Some(file) => file.write(&campaign, findings.as_ref(), &path),
-        None => Ok(()),
+    let flown = campaign.and_then(|campaign| {
+        // A campaign that is read has a directory.
+        let out = out.unwrap_or_default();
+        let findings = arguments.fly(&campaign, &out)?;
+        Ok((campaign, findings, out))
+    });
+    let reported = match (&report, &flown) {
+        (None, _) => Ok(()),
+        (Some(report), Ok((_, findings, out))) => report.write(&findings.manifest, out),
+        (Some(report), Err(failure)) => report.write_error(&name, failure),
     };
-    let findings = findings?;
+    let (campaign, findings, out) = flown?;
     if arguments.json {
         print_json(&show::findings_json(&findings))?;
     } else if !arguments.quiet {
-        print(&show::findings(&campaign, &findings, &path))?;
+        print(&show::findings(&campaign, &findings, &out))?;
     }
     reported?;
-    if let Some(error) = shortcoming(&findings.manifest, &path) {
-        return Err(Failure {
-            error: anyhow::Error::msg(error),
-            code: Code::Other,
-        });
+    if let Some(error) = shortcoming(&findings.manifest, &out) {
+        return Err(Failure::new(Code::Other, error));
     }
     match unmet(&findings.manifest) {
         None => Ok(Code::Done),
-        Some(unmet) => Err(Failure {
-            error: anyhow::Error::msg(unmet),
-            code: Code::Unmet,
-        }),
-    }
-}
-
-/// The file of `--junit`.
-struct JunitFile(OutputFile);
-
-impl JunitFile {
-    /// Writes what became of a run. Of one that came to nothing, too, unless the file's directory is not there: a run that wrote
-    /// nothing makes none.
-    fn write(
-        &self,
-        campaign: &Campaign,
-        findings: Result<&Findings, &RunError>,
-        out: &Path,
-    ) -> Result<(), Failure> {
-        let text = match findings {
-            Ok(findings) => junit(&findings.manifest, out)?,
-            Err(_) if !self.0.has_place() => return Ok(()),
-            Err(error) => junit_of_error(&campaign.name, error.to_string())?,
-        };
-        self.0.write(text.as_bytes()).map_err(not_written)
-    }
-}
-
-/// An error of the file of `--junit`, with the remedy that helps.
-fn not_written(error: OutputError) -> Failure {
-    match error {
-        OutputError::Unwritable { path, source } => Failure::usage(format!(
-            "--junit {}: cannot be written ({source}); give another file",
-            path.display()
-        )),
-        other => other.into(),
+        Some(unmet) => Err(Failure::new(Code::Unmet, unmet)),
     }
 }
 
 impl RunArguments {
-    /// The file of `--junit`, of which nothing is left from an earlier run: one that is killed must not look as if it had passed.
-    fn junit_file(&self, out: &Path) -> Result<Option<JunitFile>, Failure> {
-        let Some(path) = &self.junit else {
-            return Ok(None);
+    /// Flies a campaign into a directory.
+    fn fly(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
+        let settings = self.settings()?;
+        let out = OutputDir::claim(out, campaign, self.overwrite)?;
+        let extras = Extras {
+            csv: self.csv,
+            cross_check: self.cross_check,
         };
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if path.parent() == Some(out) && is_of_a_run(&name) {
-            return Err(Failure::usage(format!(
-                "--junit {}: the run writes a file of this name itself; give another name",
-                path.display()
-            )));
-        }
-        let file = OutputFile::claim(path).map_err(not_written)?;
-        let earlier = || fs::read_to_string(path).is_ok_and(|text| text.contains("<testsuites"));
-        if path.exists() && !self.overwrite && !earlier() {
-            return Err(Failure::usage(format!(
-                "--junit {}: exists already and is no JUnit file; give another file, or replace it with --overwrite",
-                path.display()
-            )));
-        }
-        file.remove().map_err(not_written)?;
-        Ok(Some(JunitFile(file)))
+        let shown = Shown::of_run(campaign, self.quiet);
+        Ok(run(campaign, &settings, &out, extras, &|at| {
+            shown.tell(at)
+        })?)
     }
 
     /// The settings; options that contradict each other are refused.
@@ -223,6 +184,11 @@ impl RunArguments {
         if self.backend == BackendChoice::Gpu && simd.is_some() {
             return Err(Failure::usage(
                 "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
+            ));
+        }
+        if precision == Precision::F64 && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out episodes in single precision; leave it out, or use --precision f32".into(),
             ));
         }
         if precision == Precision::F64 && self.cross_check.is_some_and(|count| count > 0) {
@@ -303,10 +269,8 @@ fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
     let shown = Shown::of_work("synthesizing gains", false);
     let mut done = Vec::new();
     for (role, design) in preset.map(Preset::designs).unwrap_or_default() {
-        let synthesis = synthesize(&design).map_err(|error| Failure {
-            error: error.into(),
-            code: Code::Synthesis,
-        })?;
+        let synthesis =
+            synthesize(&design).map_err(|error| Failure::from(error).coded(Code::Synthesis))?;
         done.push((role.name(), synthesis));
     }
     drop(shown);
@@ -396,17 +360,4 @@ impl ReplayFiles {
         }
         Ok(())
     }
-}
-
-fn completions_command(shell: Shell) -> Result<Code, Failure> {
-    let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Arguments::command(), "urts-mc", &mut script);
-    let mut script = String::from_utf8_lossy(&script).into_owned();
-    if shell == Shell::Bash {
-        // The script would look for the options of a subcommand under another name than it gives it, where the program has a
-        // hyphen in its name (clap's issue 6421): it can go once a release has mended that; the test then fails.
-        script = script.replace("urts__subcmd__mc", "urts__mc");
-    }
-    print(&script)?;
-    Ok(Code::Done)
 }

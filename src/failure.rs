@@ -33,6 +33,8 @@ pub(crate) struct Failure {
     pub(crate) error: anyhow::Error,
     /// How the program ends.
     pub(crate) code: Code,
+    /// Whether it is a place that cannot be written, for which only the command knows another.
+    unwritable: bool,
 }
 
 impl<E: Into<anyhow::Error>> From<E> for Failure {
@@ -40,17 +42,36 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
         let error = error.into();
         Self {
             code: code_of(&error),
+            unwritable: matches!(output_of(&error), Some(OutputError::Unwritable { .. })),
             error: anyhow::Error::msg(said_once(&error)),
         }
     }
 }
 
 impl Failure {
-    pub(crate) fn usage(message: String) -> Self {
+    pub(crate) fn new(code: Code, message: String) -> Self {
         Self {
             error: anyhow::Error::msg(message),
-            code: Code::Usage,
+            code,
+            unwritable: false,
         }
+    }
+
+    pub(crate) fn usage(message: String) -> Self {
+        Self::new(Code::Usage, message)
+    }
+
+    /// The same with another exit code.
+    pub(crate) fn coded(self, code: Code) -> Self {
+        Self { code, ..self }
+    }
+
+    /// The same, with what to do if it is a place that cannot be written.
+    pub(crate) fn of_place(self, remedy: &str) -> Self {
+        if !self.unwritable {
+            return self;
+        }
+        Self::new(self.code, format!("{}; {remedy}", self.error))
     }
 }
 
@@ -77,49 +98,67 @@ fn code_of(error: &anyhow::Error) -> Code {
             Code::Synthesis
         }
     };
-    let of_output = |error: &OutputError| {
-        if error.is_usage() {
-            Code::Usage
-        } else {
-            Code::Other
-        }
-    };
     let of_report = |error: &ReportError| match error {
-        ReportError::Run(error) => of_output(error),
+        ReportError::Run(_) => Code::Other,
         ReportError::Campaign(_) => Code::Usage,
         ReportError::Gains(error) => of_gains(error),
     };
+    if let Some(error) = output_of(error) {
+        return if error.is_usage() {
+            Code::Usage
+        } else {
+            Code::Other
+        };
+    }
     if error.is::<urts_mc::campaign::CampaignError>() {
         return Code::Usage;
     }
     match error.downcast_ref() {
         Some(RunError::Gains(error)) => return of_gains(error),
-        Some(RunError::Output(error)) => return of_output(error),
         Some(RunError::Flight(error)) => return of_flight(error),
         Some(RunError::Report(error)) => return of_report(error),
         _ => {}
     }
     match error.downcast_ref() {
-        Some(ReplayError::Run(error)) => return of_output(error),
         Some(ReplayError::Gains(error)) => return of_gains(error),
         Some(ReplayError::Campaign(_) | ReplayError::Usage { .. }) => return Code::Usage,
-        None => {}
+        _ => {}
     }
     match error.downcast_ref() {
-        Some(PaperError::Output(error)) => return of_output(error),
         Some(PaperError::Gains(error)) => return of_gains(error),
         // Its campaigns are part of the program: no other input would help.
         Some(PaperError::Campaign(_) | PaperError::Unsuited { .. }) => return Code::Other,
-        None => {}
+        _ => {}
     }
     if let Some(error) = error.downcast_ref() {
         return of_report(error);
     }
-    error
-        .downcast_ref()
-        .map(of_gains)
-        .or_else(|| error.downcast_ref().map(of_output))
-        .unwrap_or(Code::Other)
+    error.downcast_ref().map_or(Code::Other, of_gains)
+}
+
+/// What kept files from being written or read, whichever command it was.
+fn output_of(error: &anyhow::Error) -> Option<&OutputError> {
+    fn of_report(error: &ReportError) -> Option<&OutputError> {
+        match error {
+            ReportError::Run(error) => Some(error),
+            _ => None,
+        }
+    }
+    match error.downcast_ref() {
+        Some(RunError::Output(error)) => return Some(error),
+        Some(RunError::Report(error)) => return of_report(error),
+        _ => {}
+    }
+    if let Some(ReplayError::Run(error)) = error.downcast_ref() {
+        return Some(error);
+    }
+    if let Some(PaperError::Output(error)) = error.downcast_ref() {
+        return Some(error);
+    }
+    if let Some(error) = error.downcast_ref() {
+        return of_report(error);
+    }
+    error.downcast_ref()
 }
 
 fn of_flight(error: &FlightError) -> Code {

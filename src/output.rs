@@ -6,7 +6,7 @@ use crate::tables::Table;
 use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 /// The tables of a run; not every run writes all of them.
@@ -25,14 +25,17 @@ pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
 
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
-/// File name of the manifest, which is written after the tables: a directory that has one holds all episodes that it counts.
+/// File name of the manifest, which is written after all tables: a directory that has one holds all episodes that it counts. Only
+/// the reports, which are made of the directory, come after it.
 pub const MANIFEST: &str = "manifest.json";
 
 /// Why a run cannot be written or read.
 #[derive(Debug, Error)]
 pub enum OutputError {
     /// The directory cannot be used.
-    #[error("{}: cannot be written ({source}); give another directory with --out", path.display())]
+    ///
+    /// What would help depends on who asked for it, and is said there.
+    #[error("{}: cannot be written ({source})", path.display())]
     Unwritable {
         /// The directory or file.
         path: PathBuf,
@@ -168,10 +171,7 @@ impl OutputDir {
         &self,
         name: &str,
         table: &Table,
-        encode: impl FnOnce(
-            &mut BufWriter<File>,
-            &mut polars::prelude::DataFrame,
-        ) -> Result<(), PolarsError>,
+        encode: impl FnOnce(&mut Sink, &mut polars::prelude::DataFrame) -> Result<(), PolarsError>,
     ) -> Result<(), OutputError> {
         let broken = |source| OutputError::Table {
             path: self.0.join(name),
@@ -181,10 +181,15 @@ impl OutputDir {
         let mut encoded = Ok(());
         let written = self.write_with(name, |file| {
             encoded = encode(file, &mut frame);
-            match &encoded {
-                Ok(()) => Ok(()),
+            match (&encoded, file.broken.take()) {
+                (Ok(()), _) => Ok(()),
+                // Encoders call a full disk a malformed table.
+                (Err(_), Some(error)) => {
+                    encoded = Ok(());
+                    Err(error)
+                }
                 // Keeps the file from getting its final name; the encoder's own error is reported.
-                Err(_) => Err(ErrorKind::InvalidData.into()),
+                (Err(_), None) => Err(ErrorKind::InvalidData.into()),
             }
         });
         encoded.map_err(broken).and(written)
@@ -193,12 +198,12 @@ impl OutputDir {
     fn write_with(
         &self,
         name: &str,
-        fill: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+        fill: impl FnOnce(&mut Sink) -> std::io::Result<()>,
     ) -> Result<(), OutputError> {
         let (part, whole) = (self.0.join(format!(".{name}.part")), self.0.join(name));
         let written = fs::create_dir_all(&self.0)
             .and_then(|()| File::create(&part))
-            .map(BufWriter::new)
+            .map(Sink::new)
             .and_then(|mut file| fill(&mut file).and_then(|()| file.flush()))
             .and_then(|()| fs::rename(&part, &whole));
         written.map_err(|source| {
@@ -317,6 +322,43 @@ impl OutputFile {
     }
 }
 
+/// A file that is being written, and what its disk said first when it took no more.
+struct Sink {
+    file: BufWriter<File>,
+    broken: Option<std::io::Error>,
+}
+
+impl Sink {
+    fn new(file: File) -> Self {
+        let (file, broken) = (BufWriter::new(file), None);
+        Self { file, broken }
+    }
+
+    /// Keeps an error, for the encoder may not.
+    fn heard<T>(&mut self, result: std::io::Result<T>) -> std::io::Result<T> {
+        if let Err(error) = &result
+            && error.kind() != ErrorKind::Interrupted
+        {
+            let again = error.raw_os_error().map(std::io::Error::from_raw_os_error);
+            let again = again.unwrap_or_else(|| error.kind().into());
+            self.broken.get_or_insert(again);
+        }
+        result
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.heard(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let flushed = self.file.flush();
+        self.heard(flushed)
+    }
+}
+
 /// Removes a file that may be absent.
 fn remove(path: PathBuf) -> Result<(), OutputError> {
     match fs::remove_file(&path) {
@@ -333,19 +375,42 @@ fn is_table(name: &str) -> bool {
     TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
 }
 
-/// Whether a run or a replay writes a file of this name into its directory.
-#[must_use]
-pub fn is_of_a_run(name: &str) -> bool {
-    is_table(name)
-        || is_replay(name)
-        || REPORTS.contains(&name)
-        || [MANIFEST, "gains.json"].contains(&name)
-}
-
 /// Whether a file is the table or a figure of a replay.
 fn is_replay(name: &str) -> bool {
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     stem.starts_with("replay-") && ["parquet", "html", "svg"].contains(&extension)
+}
+
+/// Whether a file is one that a run writes, beside its manifest.
+fn is_ours(name: &str) -> bool {
+    is_table(name) || is_replay(name) || name == "gains.json" || REPORTS.contains(&name)
+}
+
+/// Whether a path is that of a file that a run in the directory `out` writes itself, whether they are there yet or not.
+#[must_use]
+pub fn is_of_run(out: &Path, path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let dir = path.parent().unwrap_or(Path::new(""));
+    (is_ours(&name) || name == MANIFEST) && resolved(dir) == resolved(out)
+}
+
+/// A directory's real path; what does not exist yet has no links in it, so that `..` is the directory before.
+fn resolved(dir: &Path) -> PathBuf {
+    let here = std::env::current_dir().unwrap_or_default();
+    let whole = here.join(dir);
+    let there = whole.ancestors().find_map(|dir| {
+        let rest = whole.strip_prefix(dir).unwrap_or(Path::new(""));
+        Some((dir.canonicalize().ok()?, rest))
+    });
+    let (mut real, rest) = there.unwrap_or((PathBuf::new(), &whole));
+    for part in rest.components() {
+        if part == Component::ParentDir {
+            real.pop();
+        } else {
+            real.push(part);
+        }
+    }
+    real
 }
 
 /// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
@@ -355,8 +420,7 @@ fn holds_only_ours(dir: &Path) -> bool {
             .strip_prefix('.')
             .and_then(|name| name.strip_suffix(".part"))
             .unwrap_or(name);
-        // One with a manifest is a run, of which more is asked.
-        whole != MANIFEST && is_of_a_run(whole)
+        is_ours(whole)
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

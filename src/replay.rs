@@ -183,6 +183,32 @@ pub fn replay(
     })
 }
 
+/// The command that replays an episode of a run in a directory, as it is typed into a shell.
+#[must_use]
+pub fn command(dir: &Path, episode: u32, controller: &str) -> String {
+    let dir = dir.display().to_string();
+    // A directory is no option.
+    let dir = if dir.starts_with('-') {
+        format!("./{dir}")
+    } else {
+        dir
+    };
+    format!(
+        "urts-mc replay {} --episode {episode} --controller {}",
+        quoted(&dir),
+        quoted(controller)
+    )
+}
+
+/// A word of a POSIX shell: in single quotes if the shell would make something else of it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_string();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
 /// How each agent ended, and what it showed.
 type Flown = (Vec<AgentOutcome>, Vec<Snapshot>);
 

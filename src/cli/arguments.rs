@@ -115,10 +115,10 @@ pub(crate) struct Overrides {
     /// The campaign file
     pub(crate) campaign: PathBuf,
     /// Fly this many episodes instead of the campaign's
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) episodes: Option<u32>,
     /// Use this seed instead of the campaign's
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub(crate) seed: Option<u64>,
 }
 
@@ -126,29 +126,51 @@ pub(crate) struct Overrides {
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
-    /// Where to fly: auto takes a hardware GPU if there is one and the CPU otherwise
-    #[arg(long, value_enum, default_value = "auto")]
+    /// Where to fly: auto takes a hardware GPU if there is one,
+    /// and the CPU otherwise
+    #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
     pub(crate) backend: BackendChoice,
     /// The GPU whose name contains this; the only way to a software one
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
-    /// Number format of the episode loop; f64 is the reference, on the CPU
-    #[arg(long, value_enum, default_value = "f32")]
+    /// Number format of the episode loop; f64 is the reference,
+    /// on the CPU
+    #[arg(
+        long,
+        value_enum,
+        default_value = "f32",
+        value_name = "FORMAT",
+        verbatim_doc_comment
+    )]
     pub(crate) precision: PrecisionChoice,
-    /// Layout of the CPU's single-precision episodes; the result is the same for avx2 and avx512
-    #[arg(long, value_enum, default_value = "auto")]
+    /// Layout of the CPU's episodes in f32; avx2 and avx512 give the same
+    /// result
+    #[arg(
+        long,
+        value_enum,
+        default_value = "auto",
+        value_name = "LANES",
+        verbatim_doc_comment
+    )]
     pub(crate) simd: SimdChoice,
-    /// Fly N random episodes again on the CPU in f64 and fail if they differ [default: 32 on a GPU, 0 on the CPU]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// Fly N random episodes again on the CPU in f64, and fail if they
+    /// differ [default: 32 on a GPU, 0 on the CPU]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        verbatim_doc_comment
+    )]
     pub(crate) cross_check: Option<u32>,
-    /// Threads; 0 takes all cores. The result does not depend on it
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
+    /// Threads; 0 takes all cores. The result is the same
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
     pub(crate) threads: u16,
     /// Output directory [default: reports/<name of the campaign>]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
-    /// Write even where the output directory holds something else, and replace the file of --junit
-    #[arg(long)]
+    /// Write even where the output directory holds something else,
+    /// and replace the file of --junit
+    #[arg(long, verbatim_doc_comment)]
     pub(crate) overwrite: bool,
     /// Write the episode and channel tables as CSV too
     #[arg(long)]
@@ -156,10 +178,11 @@ pub(crate) struct RunArguments {
     /// Print the findings as JSON on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write a JUnit file for CI systems: a test case for each [[require]], the cross-check and the flight
-    #[arg(long, value_name = "FILE")]
+    /// Write a JUnit file for CI systems: a test case for each [[require]],
+    /// the cross-check and the flight
+    #[arg(long, value_name = "FILE", verbatim_doc_comment)]
     pub(crate) junit: Option<PathBuf>,
-    /// Print nothing on standard output but what --json asks for, and show no progress
+    /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -171,7 +194,7 @@ pub(crate) struct CheckArguments {
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print nothing on standard output but what --json asks for, and show no progress
+    /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -179,10 +202,10 @@ pub(crate) struct CheckArguments {
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
     /// The failure rate to stay below, between 0 and 1
-    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = share)]
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = rate)]
     pub(crate) failure_rate: f64,
     /// How sure the claim is to be, between 0 and 1
-    #[arg(long, default_value_t = 0.95, allow_negative_numbers = true, value_parser = share)]
+    #[arg(long, default_value_t = 0.95, allow_negative_numbers = true, value_parser = confidence)]
     pub(crate) confidence: f64,
     /// Up to how many failures are listed
     #[arg(long, default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1000))]
@@ -192,14 +215,30 @@ pub(crate) struct PlanArguments {
     pub(crate) json: bool,
 }
 
+/// A rate of failures.
+fn rate(text: &str) -> Result<f64, String> {
+    share(text, "0.01 for one percent")
+}
+
+/// How sure something is to be.
+fn confidence(text: &str) -> Result<f64, String> {
+    share(text, "0.95 for 95 percent")
+}
+
 /// A number between 0 and 1.
-fn share(text: &str) -> Result<f64, String> {
+fn share(text: &str, example: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "not a number".to_string())?;
     if 0.0 < number && number < 1.0 {
         Ok(number)
     } else {
-        Err("must lie between 0 and 1, such as 0.01 for one percent".to_string())
+        Err(format!("must lie between 0 and 1, such as {example}"))
     }
+}
+
+/// A seed.
+fn seed(text: &str) -> Result<u64, String> {
+    let limit = |_| format!("must be a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(limit)
 }
 
 #[derive(Debug, Args)]
@@ -214,8 +253,9 @@ pub(crate) struct SynthesizeArguments {
     /// The campaign file
     #[arg(required_unless_present = "preset")]
     pub(crate) campaign: Option<PathBuf>,
-    /// Synthesize a preset instead of a campaign's gains
-    #[arg(long, conflicts_with = "campaign", value_parser = ["uav-paper", "uav-physical", "biped-paper"])]
+    /// Synthesize a preset instead of a campaign's
+    /// gains
+    #[arg(long, value_name = "NAME", verbatim_doc_comment, conflicts_with = "campaign", value_parser = ["uav-paper", "uav-physical", "biped-paper"])]
     pub(crate) preset: Option<String>,
     /// Print as JSON, in the format of gains.json
     #[arg(long)]
@@ -232,12 +272,19 @@ pub(crate) struct ReplayArguments {
     /// The controller
     #[arg(long, default_value = "ftc")]
     pub(crate) controller: String,
-    /// Seconds between samples, a multiple of the step [default: 0.01, or as near as the step allows]
-    #[arg(long, allow_negative_numbers = true)]
+    /// Seconds between samples, a multiple of the step
+    /// [default: 0.01, or as near as the step allows]
+    #[arg(
+        long,
+        value_name = "S",
+        allow_negative_numbers = true,
+        verbatim_doc_comment
+    )]
     pub(crate) interval: Option<f64>,
-    /// The Parquet file to write; the figures stand beside it as .html and .svg
+    /// The Parquet file to write; the figures stand beside it as .html
+    /// and .svg
     /// [default: <run>/replay-<episode>-<controller>.parquet]
-    #[arg(long)]
+    #[arg(long, value_name = "FILE", verbatim_doc_comment)]
     pub(crate) out: Option<PathBuf>,
     /// Replace the files that --out names
     #[arg(long)]
@@ -245,7 +292,7 @@ pub(crate) struct ReplayArguments {
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print nothing on standard output but what --json asks for, and show no progress
+    /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

@@ -1,6 +1,6 @@
 //! What goes to standard output and to standard error: with colours on a terminal, without where it is none or `NO_COLOR` is set.
 
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::show::BAD;
 use anstream::AutoStream;
 use std::io::{ErrorKind, Write, stderr, stdout};
@@ -9,7 +9,12 @@ use std::io::{ErrorKind, Write, stderr, stdout};
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut stream = AutoStream::auto(stdout()).lock();
     match stream.write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
+            Code::Other,
+            format!(
+                "standard output: cannot be written ({error}); make room, or send it elsewhere"
+            ),
+        )),
         _ => Ok(()),
     }
 }

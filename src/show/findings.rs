@@ -11,6 +11,7 @@ use urts_mc::comparison::{FailureRate, Measured, PairedComparison, Ratio};
 use urts_mc::conditions::title;
 use urts_mc::cross_check::CrossCheck;
 use urts_mc::ranking::RankedCondition;
+use urts_mc::replay::command;
 use urts_mc::run::Findings;
 use urts_mc::statistics::Interval;
 use urts_mc::synthesis::ChannelRole;
@@ -298,7 +299,7 @@ fn worst(findings: &Findings, out: &Path) -> String {
         line(
             &mut text,
             &format!(
-                "  {:<12} {}{}: urts-mc replay {} --episode {} --controller {}",
+                "  {:<12} {}{}: {}",
                 worst.controller,
                 worst.status.word(),
                 if worst.excess.is_finite() {
@@ -309,9 +310,7 @@ fn worst(findings: &Findings, out: &Path) -> String {
                 } else {
                     String::new()
                 },
-                out.display(),
-                worst.episode,
-                worst.controller
+                command(out, worst.episode, &worst.controller)
             ),
         );
     }

@@ -27,11 +27,10 @@ pub(crate) fn runs(failure_rate: f64, confidence: f64, most_failures: u64) -> St
     line(
         &mut text,
         &format!(
-            "to be {:.4}% sure that fewer than {:.4}% of all episodes fail",
-            100.0 * confidence,
-            100.0 * failure_rate
-        )
-        .replace(".0000", ""),
+            "to be {} sure that fewer than {} of all episodes fail",
+            percent(confidence),
+            percent(failure_rate)
+        ),
     );
     let mut head = format!("  {:>16}  {:>10}", "failures allowed", "episodes");
     for share in TRUE_SHARES {
@@ -39,7 +38,14 @@ pub(crate) fn runs(failure_rate: f64, confidence: f64, most_failures: u64) -> St
         head.push_str(&format!("  {rate:>13}"));
     }
     line(&mut text, &head);
-    for (failures, n, chances) in rows(failure_rate, confidence, most_failures) {
+    let rows = rows(failure_rate, confidence, most_failures);
+    if rows.is_empty() {
+        line(
+            &mut text,
+            "  no number of episodes that can be counted proves that",
+        );
+    }
+    for (failures, n, chances) in rows {
         let mut cells = format!("  {failures:>16}  {n:>10}");
         for chance in chances {
             cells.push_str(&format!("  {:>12.1}%", 100.0 * chance));
@@ -52,6 +58,19 @@ pub(crate) fn runs(failure_rate: f64, confidence: f64, most_failures: u64) -> St
          Decide on a row before the run; the number of failures that you then see does not change it.",
     );
     text
+}
+
+/// A share between 0 and 1 in percent, with as many digits as it takes not to say none or all.
+fn percent(share: f64) -> String {
+    let written = |decimals: usize| format!("{:.decimals$}", 100.0 * share);
+    let says_it = |decimals: &usize| {
+        let read: f64 = written(*decimals).parse().unwrap_or(f64::NAN);
+        (read / 100.0 - share).abs() <= 1e-6 * share.min(1.0 - share)
+    };
+    match (0..=15).find(says_it) {
+        Some(decimals) => format!("{}%", written(decimals)),
+        None => format!("{:e}%", 100.0 * share),
+    }
 }
 
 /// [`runs`] for programs.

@@ -269,6 +269,70 @@ fn a_file_that_cannot_be_written_or_is_something_else_is_refused_before_flying()
 }
 
 #[test]
+fn a_campaign_that_is_refused_is_an_error_too_and_leaves_no_earlier_success() {
+    let place = with(&[("ftc", "0.64")]);
+    place.succeeds(&RUN);
+    let text = place.read("c.toml");
+    let refused = |more: &[&str], word: &str| {
+        assert_eq!(place.program(&[&RUN as &[_], more].concat()).code, 2);
+        let found = elements(&place.read("ci/urts.xml"));
+        assert_eq!(counts(&found), [1, 0, 1]);
+        let suite = found.iter().find(|own| own.name == "testsuite").unwrap();
+        let message = &found.last().unwrap().attributes["message"];
+        assert!(
+            message.contains(word),
+            "{word:?} is missing from: {message}"
+        );
+        suite.attributes["name"].clone()
+    };
+    // A file that is not read has no name but that of the file.
+    place.write("c.toml", text.replace("step_s", "stp_s"));
+    assert_eq!(refused(&[], "unknown key `stp_s`"), "c");
+    place.write("c.toml", text);
+    assert_eq!(
+        refused(&["--seed", "7"], "holds a run of 3 episodes"),
+        "smoke"
+    );
+    assert_eq!(refused(&["--adapter", "x"], "--backend gpu"), "smoke");
+    place.succeeds(&RUN);
+    assert_eq!(counts(&elements(&place.read("ci/urts.xml"))), [2, 0, 0]);
+    // Where there is no directory for it, none is made.
+    fs::remove_dir_all(place.path("ci")).unwrap();
+    place.refuses(
+        &[&RUN as &[_], &["--seed", "7"]].concat(),
+        2,
+        &["--overwrite"],
+    );
+}
+
+#[test]
+fn a_file_that_the_run_writes_itself_is_refused() {
+    let place = with(&[("ftc", "0.64")]);
+    let refused = |out: &[&str], file: &str| {
+        let words =
+            format!("--junit {file}: the run writes a file of this name itself; give another file");
+        let run = [&["run", "c.toml", "--overwrite", "--junit", file], out].concat();
+        place.refuses(&run, 2, &[&words]);
+    };
+    for file in [
+        "out/report.html",
+        "./out/manifest.json",
+        "out/../out/summary.csv",
+    ] {
+        refused(&["--out", "out"], file);
+    }
+    refused(&[], "reports/smoke/report.md");
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    refused(&["--out", "./out/"], "out/../out/gains.json");
+    let page = place.read("out/report.html");
+    assert!(page.starts_with("<!DOCTYPE html>"), "{page:.80}");
+    // Another name there, and one of these elsewhere, may be.
+    place.succeeds(&["run", "c.toml", "--out", "out", "--junit", "out/ci.xml"]);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--junit", "report.html"]);
+    assert_eq!(counts(&elements(&place.read("report.html"))), [2, 0, 0]);
+}
+
+#[test]
 fn an_interrupted_flight_and_a_missing_cross_check_are_errors_and_a_failed_one_a_failure() {
     let place = with(&[("ftc", "0.64")]);
     place.succeeds(&[&RUN as &[_], &["--cross-check", "1"]].concat());

@@ -72,6 +72,57 @@ fn a_directory_that_cannot_be_written_is_refused() {
 }
 
 #[test]
+fn what_helps_where_nothing_can_be_written_is_an_option_of_the_command() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    fs::remove_file(place.path("out/report.html")).unwrap();
+    for taken in ["out/report.html", "out/replay-0-ftc.parquet", "figures"] {
+        fs::create_dir(place.path(taken)).unwrap();
+    }
+    let words = [
+        "error: out/report.html: cannot be written (",
+        "make their directory writable",
+    ];
+    let said = place.refuses(&["report", "out"], 2, &words);
+    assert!(!said.contains("--out"), "{said}");
+    let replay = ["replay", "out", "--episode", "0"];
+    place.refuses(
+        &replay,
+        2,
+        &["out/replay-0-ftc.parquet: cannot be written (it is no file); give another file with --out"],
+    );
+    place.refuses(
+        &[&replay as &[_], &["--overwrite", "--out", "figures"]].concat(),
+        2,
+        &[
+            "figures: cannot be written (",
+            "give another file with --out",
+        ],
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_takes_no_more_is_named_and_not_the_table() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    // Files of more than 4 KiB are refused as on a full disk: with an error in the midst of the table.
+    let script = "trap '' XFSZ; ulimit -f 4; exec \"$0\" replay out --episode 0 --out far.parquet";
+    let ended = std::process::Command::new("bash")
+        .current_dir(place.0.path())
+        .args(["-c", script, env!("CARGO_BIN_EXE_urts-mc")])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(
+        said,
+        "error: ./far.parquet: cannot be written (File too large (os error 27)); give another file with --out\n"
+    );
+    assert_eq!(ended.status.code(), Some(2));
+    assert_eq!(names(place.0.path()), ["c.toml", "out"]);
+}
+
+#[test]
 fn another_campaigns_run_is_replaced_only_on_request() {
     let place = Place::smoke(&[]);
     place.succeeds(&RUN);

@@ -2,6 +2,7 @@
 
 use super::{Ended, Place};
 use urts_mc::comparison::HOW_SURE;
+use urts_mc::replay::command;
 
 const ESCAPE: char = '\x1b';
 /// A campaign with a requirement that holds, one that does not, and the other half of an unequal comparison.
@@ -40,7 +41,7 @@ fn a_pipe_and_no_color_get_plain_text_and_who_asks_for_colours_gets_them() {
         assert!(coloured.stdout.contains(word), "{word:?}");
     }
     let red = "\x1b[1m\x1b[31merror:\x1b[0m c.toml: require[1]";
-    assert!(coloured.stderr.starts_with(red), "{:?}", coloured.stderr);
+    assert!(coloured.stderr.contains(red), "{:?}", coloured.stderr);
     let both = [("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")];
     let neither = ended(&place, &run, &both);
     assert!(!neither.stdout.contains(ESCAPE) && !neither.stderr.contains(ESCAPE));
@@ -262,4 +263,35 @@ fn a_mistyped_adapter_is_answered_with_the_nearest_word_of_a_name() {
             &format!("did you mean {word:?}?"),
         ],
     );
+}
+
+#[test]
+fn a_replay_that_is_printed_can_be_pasted_into_a_shell() {
+    let place = Place::smoke(&[]);
+    let said = place.succeeds(&["run", "c.toml", "--out", "it's my run"]);
+    let (_, printed) = said.split_once(": urts-mc replay ").unwrap();
+    let arguments = printed.lines().next().unwrap();
+    assert!(arguments.starts_with(r"'it'\''s my run' --episode "));
+    let ended = std::process::Command::new("sh")
+        .current_dir(place.0.path())
+        .arg("-c")
+        .arg(format!("\"$0\" replay {arguments}"))
+        .arg(env!("CARGO_BIN_EXE_urts-mc"))
+        .output()
+        .unwrap();
+    assert!(ended.status.success() && ended.stderr.is_empty());
+    // Quotes stand only where a shell needs them.
+    for (dir, shown) in [
+        ("reports/smoke", "reports/smoke"),
+        ("/runs/2026-11:a,b_c@d+e=f%", "/runs/2026-11:a,b_c@d+e=f%"),
+        ("a$b", "'a$b'"),
+        ("~x", "'~x'"),
+        ("-x", "./-x"),
+        ("", "''"),
+    ] {
+        assert_eq!(
+            command(dir.as_ref(), 9, "pid"),
+            format!("urts-mc replay {shown} --episode 9 --controller pid")
+        );
+    }
 }

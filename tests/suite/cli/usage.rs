@@ -13,7 +13,27 @@ fn a_wrong_command_line_exits_with_2_and_says_what_would_be_right() {
         ("run c.toml --epsiodes 3", ["'--epsiodes'", "'--episodes'"]),
         ("run c.toml --episodes 0", ["'0'", "1..=4294967295"]),
         ("run c.toml --episodes -1", ["'-1'", "1..=4294967295"]),
-        ("run c.toml --seed -1", ["'-1'", "--seed"]),
+        (
+            "run c.toml --seed -1",
+            ["'-1'", "from 0 to 18446744073709551615"],
+        ),
+        (
+            "run c.toml --seed 18446744073709551616",
+            ["--seed", "from 0 to 18446744073709551615"],
+        ),
+        (
+            "run c.toml --precision f64 --simd avx2",
+            ["--simd", "leave it out, or use --precision f32"],
+        ),
+        (
+            "run c.toml --precision f64 --simd scalar",
+            ["--simd", "leave it out, or use --precision f32"],
+        ),
+        (
+            "plan --failure-rate 0.01 --confidence 95",
+            ["'95'", "0.95 for 95 percent"],
+        ),
+        ("plan --failure-rate 1", ["'1'", "0.01 for one percent"]),
         ("run c.toml --precision f16", ["'f16'", "f32, f64"]),
         ("run c.toml --simd neon", ["'neon'", "auto, scalar"]),
         (
@@ -157,7 +177,7 @@ fn output_that_cannot_be_printed_exits_with_1_and_a_reader_that_left_is_none() {
     assert_eq!(full.status.code(), Some(1));
     let said = String::from_utf8(full.stderr).unwrap();
     assert!(
-        said.starts_with("error: ") && said.contains("No space left"),
+        said.starts_with("error: standard output: cannot be written (No space left"),
         "{said}"
     );
 
@@ -191,6 +211,22 @@ fn plan_tells_the_episodes_that_a_claim_needs() {
         let text = place.succeeds(&["plan", "--failure-rate", rate]);
         assert!(text.contains(&format!(" {episodes} ")), "{text}");
     }
+    // Neither "0%" nor "100%".
+    let rare = [
+        "plan",
+        "--failure-rate",
+        "1e-12",
+        "--confidence",
+        "0.9999999",
+    ];
+    let text = place.succeeds(&rare);
+    let claim = "to be 99.99999% sure that fewer than 0.0000000001% of all episodes fail\n";
+    assert!(text.starts_with(claim), "{text}");
+    let text = place.succeeds(&["plan", "--failure-rate", "0.0027"]);
+    let claim = "to be 95% sure that fewer than 0.27% of all episodes fail\n";
+    assert!(text.starts_with(claim), "{text}");
+    let text = place.succeeds(&["plan", "--failure-rate", "1e-17"]);
+    assert!(text.contains("\n  no number of episodes"), "{text}");
     for rate in ["0", "1", "-0.1", "nan", "1%"] {
         place.refuses(&["plan", "--failure-rate", rate], 2, &["--failure-rate"]);
     }
