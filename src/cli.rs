@@ -19,10 +19,11 @@ use completions::completions;
 use progress::Shown;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use terminal::{print, print_json};
+use terminal::{print, print_json, print_note};
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::{Tuning, adapters};
 use urts_mc::campaign::Campaign;
+use urts_mc::cautions::cautions;
 use urts_mc::flight::{Backend, Settings};
 use urts_mc::gains::GainSet;
 use urts_mc::output::{OutputDir, OutputFile};
@@ -140,6 +141,9 @@ impl RunArguments {
             csv: self.csv,
             cross_check: self.cross_check,
         };
+        if !self.quiet {
+            cautions(campaign).iter().for_each(|said| print_note(said));
+        }
         let shown = Shown::of_run(campaign, self.quiet);
         Ok(run(campaign, &settings, &out, extras, &|at| {
             shown.tell(at)

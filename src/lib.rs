@@ -5,7 +5,7 @@
 //! and values move forward only:
 //!
 //! ```text
-//! campaign -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
+//! campaign (cautions) -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
 //!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report (caveats); paper
 //! ```
 //!
@@ -20,6 +20,7 @@
 pub mod attenuation;
 pub mod backend;
 pub mod campaign;
+pub mod cautions;
 pub mod caveats;
 pub mod comparison;
 pub mod conditions;

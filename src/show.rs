@@ -3,6 +3,8 @@
 mod attenuation;
 mod conclusion;
 mod devices;
+mod drawn;
+mod effort;
 mod findings;
 mod findings_json;
 mod gains;

@@ -62,6 +62,34 @@ impl Strata {
         self.pattern.len()
     }
 
+    /// How many of the first `episodes` are a stratum's.
+    #[must_use]
+    pub fn count(&self, stratum: usize, episodes: u32) -> u64 {
+        let own = |places: &[usize]| places.iter().filter(|&&own| own == stratum).count() as u64;
+        let turn = self.pattern.len().max(1);
+        let rest = (episodes as usize % turn).min(self.pattern.len());
+        (episodes as usize / turn) as u64 * own(&self.pattern) + own(&self.pattern[..rest])
+    }
+
+    /// How many episodes there are when a stratum has had its `nth`, counted from 1; 0 of a stratum that there is not.
+    #[must_use]
+    pub fn episodes_for(&self, stratum: usize, nth: u64) -> u64 {
+        let places = (1u64..).zip(&self.pattern);
+        let own: Vec<u64> = places
+            .filter(|(_, own)| **own == stratum)
+            .map(|(place, _)| place)
+            .collect();
+        let before = nth.saturating_sub(1);
+        let place = before.checked_rem(own.len() as u64);
+        let place = place.and_then(|place| own.get(usize::try_from(place).ok()?));
+        place.map_or(0, |place| {
+            let turns = before / own.len() as u64;
+            turns
+                .saturating_mul(self.pattern.len() as u64)
+                .saturating_add(*place)
+        })
+    }
+
     /// The index of an episode's stratum.
     #[must_use]
     pub fn index(&self, episode: u32) -> Option<usize> {

@@ -24,6 +24,13 @@ pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&format!("{}\n", serde_json::to_string_pretty(value)?))
 }
 
+/// Says on standard error what is worth knowing before the work begins.
+pub(super) fn print_note(note: &str) {
+    let mut stream = AutoStream::auto(stderr()).lock();
+    // There is no other place to say it.
+    let _ = writeln!(stream, "note: {note}");
+}
+
 /// Says what went wrong on standard error.
 pub(crate) fn print_error(failure: &Failure) {
     let mut stream = AutoStream::auto(stderr()).lock();

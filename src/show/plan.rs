@@ -1,26 +1,19 @@
 //! What a campaign would do.
 
+use super::drawn::{drawn, drawn_json};
+use super::effort::{lasting, seconds, steps};
 use super::line;
 use serde_json::{Value, json};
-use urts_mc::campaign::{Agent, Campaign, Goal, StratumFaults};
-use urts_mc::draw::draw;
+use urts_mc::campaign::{Campaign, Goal, Stratum, StratumFaults};
+use urts_mc::cautions::cautions;
 use urts_mc::gains::GainSet;
 
-/// Episodes that `check` draws to show real ranges.
-const SHOWN_DRAWS: u32 = 200;
+/// Columns of a wrapped line.
+const WIDTH: usize = 100;
 
 /// What a campaign would do.
 pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     let mut text = String::new();
-    let steps = f64::from(campaign.time.steps);
-    let agents = campaign.agent.plural();
-    // As the benchmarks found.
-    let rate = match campaign.agent {
-        Agent::Uav(_) => 25.0,
-        Agent::Biped(_) => 4.0,
-    };
-    let work =
-        steps * f64::from(campaign.episodes) * (campaign.team * campaign.controllers.len()) as f64;
     line(
         &mut text,
         &format!("{}: {}", campaign.path.display(), campaign.name),
@@ -32,7 +25,7 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             campaign.episodes,
             campaign.team,
             campaign.agent.noun(campaign.team),
-            steps * campaign.time.step_s,
+            campaign.time.shown_s(campaign.time.steps),
             campaign.time.step_s,
             campaign.seed
         ),
@@ -40,14 +33,17 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     line(
         &mut text,
         &format!(
-            "  controllers {}: {:.2e} steps of {agents}, about {:.0} s on one core with 16 SIMD lanes (at {rate} million a second)",
+            "  controllers {}: {:.2e} steps of {}, roughly {} on one core with 16 SIMD lanes",
             campaign.controllers.join(", "),
-            work,
-            (work / (1e6 * rate)).ceil()
+            steps(campaign),
+            campaign.agent.plural(),
+            lasting(seconds(campaign))
         ),
     );
     for sentence in design(campaign) {
-        line(&mut text, &format!("  {sentence}"));
+        for part in wrapped(&sentence) {
+            line(&mut text, &part);
+        }
     }
     for controller in &gains.controllers {
         for (group, channel) in campaign.channel_groups().iter().zip(&controller.groups) {
@@ -69,23 +65,9 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             );
         }
     }
-    line(
-        &mut text,
-        &format!(
-            "  drawn in the first {} episodes, as applied (lowest .. highest):",
-            SHOWN_DRAWS.min(campaign.episodes)
-        ),
-    );
-    for (name, low, high, count) in ranges(campaign) {
-        let range = if low >= high {
-            format!("{low:.6}")
-        } else {
-            format!("{low:.6} .. {high:.6}")
-        };
-        line(
-            &mut text,
-            &format!("    {name:<42} {range}   ({count} values)"),
-        );
+    text.push_str(&drawn(campaign));
+    for caution in cautions(campaign) {
+        line(&mut text, &format!("note: {caution}"));
     }
     text
 }
@@ -93,24 +75,7 @@ pub(crate) fn plan(campaign: &Campaign, gains: &GainSet) -> String {
 /// How the episodes are divided, drawn and ended, where that is not as usual.
 fn design(campaign: &Campaign) -> Vec<String> {
     let mut sentences = Vec::new();
-    let strata = &campaign.strata;
-    for stratum in strata.all() {
-        let faults = match &stratum.faults {
-            StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
-            StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
-            StratumFaults::Certain(faults) => {
-                let names = faults.iter().filter_map(|&k| campaign.faults.get(k));
-                let names: Vec<&str> = names.map(|fault| &*fault.name).collect();
-                format!("{} in every agent", names.join(" + "))
-            }
-        };
-        sentences.push(format!(
-            "stratum {:?}: {} of every {} episodes, {faults}",
-            stratum.name,
-            stratum.share,
-            strata.turn()
-        ));
-    }
+    strata(campaign, &mut sentences);
     if let Some(replicates) = campaign.sampling.replicates() {
         sentences.push(format!(
             "sampling: {:?}, {replicates} replicates of {} episodes",
@@ -136,6 +101,70 @@ fn design(campaign: &Campaign) -> Vec<String> {
     sentences
 }
 
+/// What is flown in each stratum. Those of a fault alone, which has their name, are told together where they are of one size.
+fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
+    let turn = campaign.strata.turn();
+    let alone = |stratum: &Stratum| match &stratum.faults {
+        StratumFaults::Certain(faults) => match faults.as_slice() {
+            &[fault] => campaign.faults.get(fault).map(|own| &own.name) == Some(&stratum.name),
+            _ => false,
+        },
+        StratumFaults::Drawn => false,
+    };
+    let all = campaign.strata.all();
+    for (index, stratum) in all.iter().enumerate() {
+        let like = |other: &&Stratum| alone(other) && other.share == stratum.share;
+        let share = stratum.share;
+        if alone(stratum) {
+            let names: Vec<&str> = all.iter().filter(like).map(|own| &*own.name).collect();
+            if all[..index].iter().any(|other| like(&other)) {
+                continue;
+            }
+            if let count @ 2.. = names.len() {
+                sentences.push(format!(
+                    "{count} strata of {share} of every {turn} episodes, in each one fault in every agent: {}",
+                    names.join(", ")
+                ));
+                continue;
+            }
+        }
+        let faults = match &stratum.faults {
+            StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
+            StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
+            StratumFaults::Certain(faults) => {
+                let names = faults.iter().filter_map(|&k| campaign.faults.get(k));
+                let names: Vec<&str> = names.map(|fault| &*fault.name).collect();
+                format!("{} in every agent", names.join(" + "))
+            }
+        };
+        sentences.push(format!(
+            "stratum {:?}: {share} of every {turn} episodes, {faults}",
+            stratum.name
+        ));
+    }
+}
+
+/// A sentence in lines of moderate length, all but the first further to the right: broken at commas, or where there are none
+/// between words.
+fn wrapped(sentence: &str) -> Vec<String> {
+    let parts = sentence.split_inclusive(", ").flat_map(|part| {
+        let whole = part.chars().count() < WIDTH / 2;
+        part.split_inclusive(if whole { ", " } else { " " })
+    });
+    let mut lines = vec!["  ".to_string()];
+    for part in parts {
+        let length = |text: &str| text.trim_end().chars().count();
+        match lines.last_mut() {
+            Some(last) if last.chars().count() + length(part) <= WIDTH => last.push_str(part),
+            _ => lines.push(format!("    {part}")),
+        }
+    }
+    lines
+        .iter()
+        .map(|line| line.trim_end().to_string())
+        .collect()
+}
+
 /// [`plan`] for programs.
 pub(crate) fn plan_json(campaign: &Campaign) -> Value {
     json!({
@@ -145,82 +174,8 @@ pub(crate) fn plan_json(campaign: &Campaign) -> Value {
         })).collect::<Vec<_>>(),
         "design": design(campaign),
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
-        "drawn": ranges(campaign).into_iter().map(|(name, low, high, count)| json!({
-            "name": name, "lowest": low, "highest": high, "values": count,
-        })).collect::<Vec<_>>(),
+        "drawn": drawn_json(campaign),
+        "roughly_s": seconds(campaign),
+        "notes": cautions(campaign),
     })
-}
-
-/// The range of every quantity over the first episodes: name, lowest, highest, number of values.
-fn ranges(campaign: &Campaign) -> Vec<(String, f64, f64, usize)> {
-    let mut drawn: Vec<(String, Vec<f64>)> = Vec::new();
-    let mut add =
-        |name: String, values: &[f64]| match drawn.iter_mut().find(|(own, _)| *own == name) {
-            Some((_, all)) => all.extend(values),
-            None => drawn.push((name, values.to_vec())),
-        };
-    for episode in 0..SHOWN_DRAWS.min(campaign.episodes) {
-        for agent in draw(campaign, episode).agents {
-            add("mass_scale".into(), &[agent.mass_scale]);
-            if let Agent::Uav(_) = campaign.agent {
-                add("inertia_scale".into(), &[agent.inertia_scale]);
-            }
-            add("kappa".into(), &[agent.kappa]);
-            if campaign.control.delay_s.is_some() {
-                add("control delay_s".into(), &[agent.control_delay_s]);
-            }
-            add("initial error".into(), &agent.error);
-            add("initial error_rate".into(), &agent.error_rate);
-            add("initial error_integral".into(), &agent.error_integral);
-            for (k, (disturbance, values)) in campaign
-                .disturbances
-                .iter()
-                .zip(&agent.disturbances)
-                .enumerate()
-            {
-                for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
-                    add(format!("disturbance[{k}] {}", parameter.name), values);
-                }
-            }
-            for (k, (fault, draw)) in campaign.faults.iter().zip(&agent.faults).enumerate() {
-                let struck = |values: &[f64]| -> Vec<f64> {
-                    values
-                        .iter()
-                        .zip(&draw.strikes)
-                        .filter(|(_, strikes)| **strikes)
-                        .map(|(value, _)| *value)
-                        .collect()
-                };
-                let kind = fault.kind.name();
-                add(
-                    format!("fault[{k}] {kind} occurs"),
-                    &[f64::from(u8::from(draw.occurs()))],
-                );
-                if draw.occurs() {
-                    add(format!("fault[{k}] {kind} onset_s"), &[draw.onset_s]);
-                    if fault.duration_s.is_some() {
-                        add(format!("fault[{k}] {kind} duration_s"), &[draw.duration_s]);
-                    }
-                    if fault.ramp_s.is_some() {
-                        add(format!("fault[{k}] {kind} ramp_s"), &[draw.ramp_s]);
-                    }
-                }
-                for (parameter, values) in fault.kind.parameters().iter().zip(&draw.parameters) {
-                    add(
-                        format!("fault[{k}] {kind} {}", parameter.name),
-                        &struck(values),
-                    );
-                }
-            }
-        }
-    }
-    drawn
-        .into_iter()
-        .filter(|(_, values)| !values.is_empty())
-        .map(|(name, values)| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (name, low, high, values.len())
-        })
-        .collect()
 }

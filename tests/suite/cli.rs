@@ -7,6 +7,7 @@ mod campaign_plans;
 mod gains;
 mod help;
 mod junit;
+mod notes;
 mod output;
 mod results;
 mod terminal;

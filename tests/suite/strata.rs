@@ -35,6 +35,25 @@ fn screening(episodes: u32) -> Campaign {
     )
 }
 
+#[test]
+fn the_episodes_of_a_stratum_can_be_counted_without_flying_them() {
+    let campaign = screening(64);
+    let strata = &campaign.strata;
+    let turn = u32::try_from(strata.turn()).unwrap();
+    for stratum in 0..strata.all().len() {
+        let mut count = 0;
+        for episode in 0..3 * turn + 2 {
+            assert_eq!(strata.count(stratum, episode), count);
+            if strata.index(episode) == Some(stratum) {
+                count += 1;
+                // Episodes are numbered from 0.
+                assert_eq!(strata.episodes_for(stratum, count), u64::from(episode) + 1);
+            }
+        }
+    }
+    assert_eq!((strata.count(99, 64), strata.episodes_for(99, 1)), (0, 0));
+}
+
 /// An episode's draw with the faults out of it.
 fn without_occurrence(mut episode: Episode) -> Episode {
     for fault in episode

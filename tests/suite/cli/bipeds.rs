@@ -36,7 +36,7 @@ kind = "biped"    => kind = "uav"\nrobot = "g1.toml" :: agent.robot (line 15) ~ 
 "biped-paper"     => "biped-paper"\nposition.rho = 30.0 :: synthesis.position (line 24) ~ does not have it; remove it
 "biped-paper"     => "biped-paper"\njoints.rho = -30.0 :: synthesis.joints.rho (line 24) = -30: must be above 0
 kind = "ground-reaction" => kind = "ground-reaction"\namplitude = 1.0 :: disturbance[0].amplitude (line 30) = 1.0 ~ no such parameter ~ scale
-kind = "bias"     => kind = "bias"\nchannels = [13] :: fault[0].channels (line 35) = [13] ~ from 1 (l_hip_pitch, l_hip_roll, ~ r_ankle_roll)
+kind = "bias"     => kind = "bias"\nchannels = [13] :: fault[0].channels (line 35) = [13] ~ from 1 to 12: 1 l_hip_pitch, 2 l_hip_roll, ~ 12 r_ankle_roll
 error = { normal = { mean = 0.0, std = 0.001 } } => error = [0.0, 0.0] :: initial.error (line 26) = a list of 2 ~ each of the 12 channels
 "#,
     );
@@ -80,26 +80,38 @@ points_m = [[0.0, 0.0], [1.0, 0.0]] =>   :: reference.points_m (line 18) = absen
 fn a_robot_file_that_is_none_is_refused_with_its_own_name_and_what_is_wrong_in_it() {
     let table = fs::read_to_string(repository("campaigns/robots/g1_12dof.toml")).unwrap();
     for (name, text, words) in [
-        ("nobody.toml", None, "cannot be read"),
-        ("robot.yaml", Some(String::new()), "ends in .toml"),
         (
             "robot.toml",
-            Some(table.replacen("[[joint]]", "[[jiont]]", 1)),
+            table.replacen("[[joint]]", "[[jiont]]", 1),
             "unknown",
         ),
         (
             "heavy.toml",
-            Some(table.replacen("mass = ", "mass = -", 1)),
+            table.replacen("mass = ", "mass = -", 1),
             "pelvis",
         ),
     ] {
         let robot = format!("actuation = \"limited\"\nrobot = \"{name}\"");
         let place = Place::with(&walk(&[("actuation = \"limited\"", &robot)]));
-        if let Some(text) = text {
-            place.write(name, text);
-        }
+        place.write(name, text);
         let said = place.refuses(&["check", "c.toml"], 2, &[words]);
         assert!(said.starts_with(&format!("error: {name}: ")), "{said}");
+    }
+    // Where there is no such file, the key that names it is to be corrected.
+    for (name, words) in [
+        (
+            "robots/nobody.toml",
+            "cannot be read (No such file or directory (os error 2)); name an existing robot file, relative to the campaign",
+        ),
+        (
+            "robot.yaml",
+            "a robot file ends in .toml (joint table) or .urdf; rename it or name another",
+        ),
+    ] {
+        let robot = format!("actuation = \"limited\"\nrobot = \"{name}\"");
+        let place = Place::with(&walk(&[("actuation = \"limited\"", &robot)]));
+        let words = format!("error: c.toml: agent.robot (line 16) = \"{name}\": {words}");
+        place.refuses(&["check", "c.toml"], 2, &[&words]);
     }
 }
 
@@ -109,7 +121,12 @@ fn a_run_of_robots_is_replayed_without_the_robots_file() {
     let place = Place::with(&walk(&[robot]));
     let table = fs::read_to_string(repository("campaigns/robots/g1_12dof.toml")).unwrap();
     place.write("own.toml", &table);
-    let said = place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
+    // It has not gone far in 2 s, which is said before the flight.
+    let ended = place.program(&["run", "c.toml", "--out", "out", "--csv"]);
+    let note = "the episode 2 s; its end is not reached\n";
+    assert!(ended.stderr.ends_with(note), "{}", ended.stderr);
+    assert_eq!((ended.code, ended.stderr.lines().count()), (0, 1));
+    let said = ended.stdout;
     for words in ["x 1 robot,", "joints, rad", "10 more channels"] {
         assert!(said.contains(words), "{words:?} is missing from: {said}");
     }
@@ -135,5 +152,9 @@ fn a_run_of_robots_is_replayed_without_the_robots_file() {
     assert!((shown[1] / number(&row["max_abs"]) - 1.0).abs() < 6e-4);
     assert!(shown[0] > 1e-4, "{line}");
     // The run itself needs the file.
-    place.refuses(&["check", "c.toml"], 2, &["own.toml: cannot be read"]);
+    place.refuses(
+        &["check", "c.toml"],
+        2,
+        &["agent.robot", "\"own.toml\": cannot be read"],
+    );
 }

@@ -17,7 +17,8 @@ fn check_shows_what_would_be_drawn_and_flies_and_writes_nothing() {
         "ftc, pid, pid-tuned",
         "certified rho",
         "mass_scale",
-        "fault[0] loss-of-effectiveness magnitude",
+        "fault[0] actuator loss-of-effectiveness, in ",
+        " days on one core",
     ] {
         assert!(text.contains(word), "{word:?} is missing from: {text}");
     }
@@ -31,7 +32,7 @@ fn check_shows_what_would_be_drawn_and_flies_and_writes_nothing() {
             found["highest"].as_f64().unwrap(),
         )
     };
-    let (low, high) = range("fault[0] loss-of-effectiveness magnitude");
+    let (low, high) = range("fault[0] actuator loss-of-effectiveness magnitude");
     // Uniform on [0.1, 0.5], some 150 draws: both ends are within 0.05 but for odds of 1e-8.
     assert!((0.1..0.15).contains(&low) && (0.45..0.5).contains(&high));
     assert_eq!(range("kappa"), (0.0, 1.0));

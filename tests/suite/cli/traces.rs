@@ -280,7 +280,8 @@ fn a_robot_shows_its_walk_and_itself() {
         text = text.replace(old, new);
     }
     let place = Place::with(&text);
-    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    // The walk takes longer than that, which is noted.
+    assert_eq!(place.program(&["run", "c.toml", "--out", "out"]).code, 0);
     let flown = replay(&place.path("out"), 0, "ftc", None).unwrap();
     place.succeeds(&["replay", "out", "--episode", "0"]);
     let page = place.read("out/replay-0-ftc.html");
