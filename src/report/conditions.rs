@@ -6,6 +6,7 @@ use super::panel::{Axis, Ink, Mark, Panel, Stroke};
 use crate::conditions::{conditions, title};
 use crate::draw::draw;
 use crate::ranking::by_chance;
+use crate::replay::command;
 use crate::words;
 use std::collections::BTreeMap;
 
@@ -323,9 +324,10 @@ pub(crate) fn worst(evidence: &Evidence) -> Section {
                 "" => "none",
                 faults => faults,
             }),
-            Cell::Code(format!(
-                "urts-mc replay {} --episode {episode:.0} --controller {controller}",
-                evidence.dir.display()
+            Cell::Code(command(
+                &evidence.dir,
+                u32::try_from(whole(episode)).unwrap_or(u32::MAX),
+                controller,
             )),
         ]);
     }
