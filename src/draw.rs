@@ -162,8 +162,10 @@ impl Draws<'_> {
     fn fault(&self, fault: &crate::campaign::Fault, entry: u32, agent: usize) -> FaultDraw {
         let unit = |index| self.unit(Stream::Fault, entry, index, Per::Agent, agent, 0);
         let occurs = match self.stratum.map(|stratum| &stratum.faults) {
-            None | Some(StratumFaults::Drawn) => unit(OCCURRENCE) < fault.probability,
-            Some(StratumFaults::Certain(faults)) => faults.contains(&(entry as usize)),
+            None | Some(StratumFaults::Drawn) => unit(OCCURRENCE) < fault.probability[agent],
+            Some(StratumFaults::Certain(faults)) => {
+                faults.contains(&(entry as usize)) && fault.probability[agent] > 0.0
+            }
         };
         #[expect(
             clippy::cast_possible_truncation,
@@ -172,7 +174,7 @@ impl Draws<'_> {
             reason = "a channel number"
         )]
         let one = (unit(STRUCK_CHANNEL) * self.channels as f64) as usize;
-        let struck = |channel: usize| match &fault.channels {
+        let struck = |channel: usize| match &fault.channels[agent] {
             FaultChannels::One => channel == one,
             FaultChannels::These(channels) => channels.contains(&channel),
         };

@@ -1,7 +1,7 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use crate::backend::Flown;
-use crate::campaign::{Agent, Campaign, ChannelGroup, FaultChannels, Parameter, Time};
+use crate::campaign::{Agent, Campaign, ChannelGroup, Parameter, Time};
 use crate::conditions::{Condition, conditions};
 use crate::draw::AgentDraw;
 use crate::model::episode::AgentOutcome;
@@ -441,10 +441,14 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     }
     for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
         row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
-        if fault.channels == FaultChannels::One {
-            let channel = drawn.strikes.iter().position(|strikes| *strikes);
-            let struck = channel.and_then(|channel| campaign.channels().get(channel));
-            let struck = struck.map_or("".into(), Clone::clone);
+        if fault.strikes_one() {
+            let of_channels = campaign.channels().iter().zip(&drawn.strikes);
+            let struck: Vec<_> = of_channels.filter(|(_, strikes)| **strikes).collect();
+            // More than one: of an agent with channels of its own.
+            let struck = match struck.as_slice() {
+                [(channel, _)] => Arc::clone(channel),
+                _ => "".into(),
+            };
             row.name(|| format!("fault{index}_channel"), struck);
         }
         let (time, occurs) = (campaign.time, drawn.occurs());

@@ -98,9 +98,29 @@ parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale, speed
     wind_m_s, altitude_m, airspeed_m_s, force_n, radius_m, length_m);
 parameters!(FaultFile: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
     burst_s, share, mass_kg, offset_x_m, offset_y_m);
-parameters!(SignalBlock: amplitude, frequency_rad_s, phase_rad, magnitude, period_s, smoothing, std, scale, speed_m_s,
-    gain_n_s_m, onset_s, duration_s, wind_m_s, altitude_m, airspeed_m_s, rate, delay_s, window_s, burst_s, share, mass_kg,
-    offset_x_m, offset_y_m, force_n, radius_m, length_m);
+parameters!(DisturbanceBlock: amplitude, frequency_rad_s, phase_rad, scale, speed_m_s, gain_n_s_m, onset_s, duration_s,
+    wind_m_s, altitude_m, airspeed_m_s, force_n, radius_m, length_m);
+parameters!(FaultBlock: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
+    burst_s, share, mass_kg, offset_x_m, offset_y_m);
+
+/// Where a quantity of a table with blocks may be written.
+#[derive(Clone, Copy)]
+pub(super) struct Written<'a> {
+    /// In the table.
+    pub(super) base: Option<&'a Value>,
+    /// In an agent's block.
+    pub(super) own: &'a dyn Fn(usize) -> Option<&'a Value>,
+}
+
+impl<'a> Written<'a> {
+    /// What holds for an agent, with its key.
+    pub(super) fn of(&self, table: &str, name: &str, agent: usize) -> (String, Option<&'a Value>) {
+        match (self.own)(agent) {
+            Some(own) => (format!("{table}.agents[{agent}].{name}"), Some(own)),
+            None => (format!("{table}.{name}"), self.base),
+        }
+    }
+}
 
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
@@ -147,11 +167,11 @@ impl Check<'_> {
     }
 
     /// The parameters of a disturbance or fault; one that its kind does not have is refused.
-    pub(super) fn parameters<T: Parameters>(
+    pub(super) fn parameters<T: Parameters, B: Parameters>(
         &self,
         table: &str,
         base: &T,
-        blocks: Option<&[SignalBlock]>,
+        blocks: Option<&[B]>,
         parameters: &'static [Parameter],
         team: usize,
     ) -> Result<Vec<Drawn>, CampaignError> {
@@ -162,7 +182,7 @@ impl Check<'_> {
         });
         let in_blocks = || {
             blocks?.iter().enumerate().find_map(|(agent, block)| {
-                SignalBlock::NAMES.iter().copied().find_map(|name| {
+                B::NAMES.iter().copied().find_map(|name| {
                     let value = block.parameter(name).filter(|_| foreign(name))?;
                     Some((format!("{table}.agents[{agent}].{name}"), value))
                 })
@@ -192,25 +212,34 @@ impl Check<'_> {
         parameter: Parameter,
         team: usize,
     ) -> Result<Drawn, CampaignError> {
-        let name = parameter.name;
+        let written = Written {
+            base: base.and_then(|base| base.parameter(parameter.name)),
+            own: &|agent| blocks.and_then(|blocks| blocks[agent].parameter(parameter.name)),
+        };
+        self.of_team(table, written, parameter, team, self.channels.len())
+    }
+
+    /// A parameter of each agent and of so many channels.
+    pub(super) fn of_team(
+        &self,
+        table: &str,
+        written: Written<'_>,
+        parameter: Parameter,
+        team: usize,
+        channels: usize,
+    ) -> Result<Drawn, CampaignError> {
         let mut drawn = Drawn {
             per: Per::Channel,
-            channels: self.channels.len(),
+            channels,
             distributions: Vec::new(),
         };
         let mut per = None;
         for agent in 0..team {
-            let own = blocks.and_then(|blocks| blocks[agent].parameter(name));
-            let key = if own.is_some() {
-                format!("{table}.agents[{agent}].{name}")
-            } else {
-                format!("{table}.{name}")
-            };
-            let value = own.or_else(|| base.and_then(|base| base.parameter(name)));
+            let (key, value) = written.of(table, parameter.name, agent);
             if parameter.per != Per::Channel {
                 self.is_of_agent(&key, value)?;
             }
-            for channel in 0..self.channels.len() {
+            for channel in 0..channels {
                 let (distribution, own_per) =
                     self.channel_value(&key, value, parameter, channel)?;
                 // Whoever shares a constant, it is the same.

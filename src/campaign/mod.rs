@@ -340,10 +340,10 @@ pub struct Fault {
     pub link: Link,
     /// How.
     pub kind: FaultKind,
-    /// Probability that an agent has it.
-    pub probability: f64,
-    /// Where.
-    pub channels: FaultChannels,
+    /// Probability that an agent has it, per agent; 0: never, whatever a stratum says.
+    pub probability: Vec<f64>,
+    /// Where; per agent.
+    pub channels: Vec<FaultChannels>,
     /// When, s; one value per agent.
     pub onset_s: Drawn,
     /// How long, s; one value per agent. None: to the end.
@@ -362,6 +362,18 @@ impl Fault {
             .distributions
             .iter()
             .any(|onset| onset.support().1 > 0.0)
+    }
+
+    /// Whether a channel is drawn for it, in some agent.
+    #[must_use]
+    pub fn strikes_one(&self) -> bool {
+        self.channels.contains(&FaultChannels::One)
+    }
+
+    /// Whether some agent never has it.
+    #[must_use]
+    pub fn spares_some(&self) -> bool {
+        self.probability.contains(&0.0)
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Part> {
         return parts;
     }
     for (index, (fault, occurs)) in campaign.faults.iter().zip(&scores.fault_occurs).enumerate() {
-        if fault.probability < 1.0 {
+        if fault.probability.iter().any(|own| *own < 1.0) {
             let (with, without) = all.iter().copied().partition(|&episode| occurs[episode]);
             for (word, episodes) in [("with", with), ("without", without)] {
                 let name = format!("{word} fault{index} {}", fault.name).into();

@@ -369,10 +369,12 @@ pub(super) fn small(count: f64) -> u32 {
 
 /// Whether a fault strikes one of the `count` channels from `first` on in some episode.
 fn may_strike(fault: &Fault, first: usize, count: usize) -> bool {
-    match &fault.channels {
+    let within = |channels: &FaultChannels| match channels {
         FaultChannels::One => true,
         FaultChannels::These(channels) => channels
             .iter()
             .any(|channel| (first..first + count).contains(channel)),
-    }
+    };
+    let mut of_agents = fault.probability.iter().zip(&fault.channels);
+    of_agents.any(|(probability, channels)| *probability > 0.0 && within(channels))
 }

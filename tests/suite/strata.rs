@@ -201,3 +201,63 @@ fn what_a_stratum_makes_certain_is_not_ranked_as_if_it_were_drawn() {
             .any(|own| own.condition == "fault0_magnitude")
     );
 }
+
+/// The smoke campaign, whose loss of effectiveness differs from agent to agent.
+fn one_by_one(more: &str) -> Campaign {
+    let blocks = r#"agents = [
+    { probability = 1.0, channels = [2, 3], onset_s = 1.0, duration_s = 0.5, magnitude = 0.25 },
+    { probability = 0.0 },
+    { channels = "one", ramp_s = { uniform = [0.2, 0.4] } },
+]"#;
+    altered(
+        "smoke",
+        &[
+            ("channels = \"one\"", "duration_s = 2.0"),
+            (
+                "magnitude = { uniform = [0.1, 0.5] }",
+                &format!("magnitude = {{ uniform = [0.1, 0.5] }}\n{blocks}"),
+            ),
+            ("[verdict]", &format!("{more}\n[verdict]")),
+        ],
+    )
+}
+
+#[test]
+fn a_block_says_whether_where_when_and_how_its_agent_has_a_fault() {
+    let campaign = one_by_one("");
+    let plain = altered("smoke", &[]);
+    let mut third = 0;
+    for episode in 0..64 {
+        let (own, common) = (draw(&campaign, episode), draw(&plain, episode));
+        let [first, second, last] = [0, 1, 2].map(|agent| &own.agents[agent].faults[0]);
+        assert_eq!(first.strikes, [false, true, true, false, false, false]);
+        assert_eq!(
+            (first.onset_s, first.duration_s, first.ramp_s),
+            (1.0, 0.5, 0.0)
+        );
+        assert_eq!(first.parameters[0], [0.25; 6]);
+        assert!(!second.occurs());
+        // The third has the table's, where its block is silent: the draws of the shipped campaign.
+        let shipped = &common.agents[2].faults[0];
+        assert_eq!(last.strikes, shipped.strikes);
+        assert_eq!(last.onset_s, shipped.onset_s);
+        assert_eq!(last.parameters, shipped.parameters);
+        assert_eq!(last.duration_s, 2.0);
+        assert!((0.2..0.4).contains(&last.ramp_s));
+        third += u32::from(last.occurs());
+    }
+    // A quarter of them.
+    assert!((6..=28).contains(&third), "{third}");
+}
+
+#[test]
+fn a_stratum_spares_whom_a_fault_never_strikes() {
+    let campaign = one_by_one("[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []");
+    for episode in 0..9 {
+        let index = campaign.strata.index(episode).unwrap();
+        let agents = draw(&campaign, episode).agents;
+        let occurs: Vec<bool> = agents.iter().map(|own| own.faults[0].occurs()).collect();
+        let certain = index == 0;
+        assert_eq!(occurs, [certain, false, certain], "episode {episode}");
+    }
+}

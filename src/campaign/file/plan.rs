@@ -78,9 +78,10 @@ pub struct RequireFile {
 #[serde(untagged)]
 #[schemars(untagged)]
 pub enum StratumFaultsFile {
-    /// "each": one stratum per fault, in which every agent has it and no other; "all": every fault with its own probability.
+    /// "each": one stratum per fault, in which every agent has it (but those whose probability is 0) and no other; "all": every
+    /// fault with its own probability.
     Word(String),
-    /// Names of faults that every agent has; it has no other. None at all: [].
+    /// Names of faults that every agent has (but those whose probability is 0); it has no other. None at all: [].
     Names(Vec<String>),
 }
 

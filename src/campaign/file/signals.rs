@@ -44,7 +44,7 @@ pub struct DisturbanceFile {
     pub length_m: Option<Value>,
     /// Blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<SignalBlock>>,
+    pub agents: Option<Vec<DisturbanceBlock>>,
 }
 
 /// Forms of a disturbance.
@@ -91,7 +91,7 @@ pub struct FaultFile {
     /// How it fails.
     #[serde(deserialize_with = "word")]
     pub kind: FaultKind,
-    /// Probability that an agent has this fault (default 1).
+    /// Probability that an agent has this fault (default 1); 0: never, not in a stratum of this fault either.
     pub probability: Option<f64>,
     /// The channels that fail (default "all").
     pub channels: Option<ChannelsFile>,
@@ -136,29 +136,21 @@ pub struct FaultFile {
     pub offset_x_m: Option<Value>,
     /// Payload, centre of mass: how far to the side, m.
     pub offset_y_m: Option<Value>,
-    /// Blocks that override the parameters above, one per agent.
+    /// Blocks that override what is above, but not name, target, kind and link, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<SignalBlock>>,
+    pub agents: Option<Vec<FaultBlock>>,
 }
 
-/// One agent's parameters of a disturbance or fault; what is absent is taken from the table around it.
+/// One agent's parameters of a disturbance; what is absent is taken from the table around it.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SignalBlock {
+pub struct DisturbanceBlock {
     /// Amplitude.
     pub amplitude: Option<Value>,
     /// Angular frequency, rad/s.
     pub frequency_rad_s: Option<Value>,
     /// Phase at t = 0, rad.
     pub phase_rad: Option<Value>,
-    /// Magnitude.
-    pub magnitude: Option<Value>,
-    /// Period, s.
-    pub period_s: Option<Value>,
-    /// tau of tanh(sin(..)/tau).
-    pub smoothing: Option<Value>,
-    /// Standard deviation.
-    pub std: Option<Value>,
     /// Share of the ground reaction.
     pub scale: Option<Value>,
     /// Speed of a gust, m/s.
@@ -175,6 +167,42 @@ pub struct SignalBlock {
     pub altitude_m: Option<Value>,
     /// Speed against the air, m/s.
     pub airspeed_m_s: Option<Value>,
+    /// Largest force of a jet, N.
+    pub force_n: Option<Value>,
+    /// Half-width of a jet, m.
+    pub radius_m: Option<Value>,
+    /// Where a jet is felt most, m.
+    pub length_m: Option<Value>,
+}
+
+/// One agent's fault; what is absent is taken from the table around it.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FaultBlock {
+    /// Probability that this agent has it; 0: never, not in a stratum of this fault either.
+    pub probability: Option<f64>,
+    /// The channels that fail.
+    pub channels: Option<ChannelsFile>,
+    /// Beginning, s.
+    pub onset_s: Option<Value>,
+    /// How long it stays, s.
+    pub duration_s: Option<Value>,
+    /// Time in which it comes, s.
+    pub ramp_s: Option<Value>,
+    /// Magnitude.
+    pub magnitude: Option<Value>,
+    /// Amplitude.
+    pub amplitude: Option<Value>,
+    /// Angular frequency, rad/s.
+    pub frequency_rad_s: Option<Value>,
+    /// Period, s.
+    pub period_s: Option<Value>,
+    /// tau of tanh(sin(..)/tau).
+    pub smoothing: Option<Value>,
+    /// Phase at t = 0, rad.
+    pub phase_rad: Option<Value>,
+    /// Standard deviation.
+    pub std: Option<Value>,
     /// Change per second.
     pub rate: Option<Value>,
     /// Delay, s.
@@ -191,12 +219,6 @@ pub struct SignalBlock {
     pub offset_x_m: Option<Value>,
     /// How far to the side, m.
     pub offset_y_m: Option<Value>,
-    /// Largest force of a jet, N.
-    pub force_n: Option<Value>,
-    /// Half-width of a jet, m.
-    pub radius_m: Option<Value>,
-    /// Where a jet is felt most, m.
-    pub length_m: Option<Value>,
 }
 
 /// What fails.

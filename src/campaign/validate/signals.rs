@@ -1,6 +1,6 @@
 //! `[[disturbance]]` and `[[fault]]`.
 
-use super::super::check::{Bounds, Check};
+use super::super::check::{Bounds, Check, Parameter, Written, of_agent};
 use super::super::error::CampaignError;
 use super::super::file::*;
 use super::super::{
@@ -20,6 +20,21 @@ const THRUST: usize = FIRST_ATTITUDE - 1;
 
 /// Samples that a delay or a replay may keep of each channel.
 const MAX_REMEMBERED: f64 = 1024.0;
+
+/// When a fault begins.
+const ONSET: Parameter = Parameter {
+    name: "onset_s",
+    default: Some(0.0),
+    bounds: Bounds::NonNegative,
+    per: Per::Agent,
+};
+/// How long it stays: to the end, if nothing is said.
+const DURATION: Parameter = of_agent("duration_s", Bounds::Positive);
+/// The time in which it comes.
+const RAMP: Parameter = Parameter {
+    name: "ramp_s",
+    ..ONSET
+};
 
 impl Check<'_> {
     /// A disturbance; `walks` says whether the reference is a walk.
@@ -89,7 +104,11 @@ impl Check<'_> {
                 )?;
             }
             DisturbanceKind::Gust1Cosine => {
-                self.begins(&key("onset_s"), file.onset_s.as_ref(), &parameters[2], time)?;
+                let written = Written {
+                    base: file.onset_s.as_ref(),
+                    own: &|agent| file.agents.as_ref()?[agent].onset_s.as_ref(),
+                };
+                self.begins(&table, written, &parameters[2], time)?;
                 self.resolved(
                     &key("duration_s"),
                     &parameters[3],
@@ -165,38 +184,38 @@ impl Check<'_> {
             ));
         }
         let link = self.link(&key("link"), file)?;
-        let of_agent = |name: &str, value: &Option<Value>, bounds: Bounds| match value {
-            None => Ok(None),
-            value => self
-                .of_agents(&key(name), value.as_ref(), None, Per::Agent, bounds, team)
-                .map(Some),
+        let blocks = file.agents.as_deref();
+        let parameters = self.parameters(&table, file, blocks, kind.parameters(), team)?;
+        let onset = Written {
+            base: file.onset_s.as_ref(),
+            own: &|agent| blocks?[agent].onset_s.as_ref(),
         };
-        let onset_s = self.of_agents(
-            &key("onset_s"),
-            file.onset_s.as_ref(),
-            Some(0.0),
-            Per::Agent,
-            Bounds::NonNegative,
-            team,
-        )?;
-        self.begins(&key("onset_s"), file.onset_s.as_ref(), &onset_s, time)?;
-        if let Some(ramp_s) = &file.ramp_s
-            && !kind.can_ramp()
-        {
+        let onset_s = self.of_team(&table, onset, ONSET, team, 1)?;
+        self.begins(&table, onset, &onset_s, time)?;
+        let duration = Written {
+            base: file.duration_s.as_ref(),
+            own: &|agent| blocks?[agent].duration_s.as_ref(),
+        };
+        let duration_s = self.perhaps(&table, duration, DURATION, team)?;
+        let ramp = Written {
+            base: file.ramp_s.as_ref(),
+            own: &|agent| blocks?[agent].ramp_s.as_ref(),
+        };
+        let ramp_s = self.perhaps(&table, ramp, RAMP, team)?;
+        if ramp_s.is_some() && !kind.can_ramp() {
+            let all = (0..team).map(|agent| ramp.of(&table, RAMP.name, agent));
+            let given = all.filter_map(|(key, value)| Some((key, value?))).next();
+            let (ramp_key, value) = given
+                .map_or((key(RAMP.name), String::new()), |(key, value)| {
+                    (key, value.to_string())
+                });
             return Err(self.invalid(
-                key("ramp_s"),
-                ramp_s,
+                ramp_key,
+                value,
                 &format!("{:?} is there or not", kind.name()),
                 "remove it",
             ));
         }
-        let parameters = self.parameters(
-            &table,
-            file,
-            file.agents.as_deref(),
-            kind.parameters(),
-            team,
-        )?;
         match kind {
             FaultKind::SmoothedSquare => {
                 self.resolved(&key("period_s"), &parameters[1], |(low, _)| TAU / low, time)?;
@@ -213,22 +232,54 @@ impl Check<'_> {
             FaultKind::Replay => self.remembered(&key("window_s"), &parameters[0], time)?,
             _ => {}
         }
+        let (mut probability, mut channels) = (Vec::new(), Vec::new());
+        for agent_index in 0..team {
+            let own = blocks.map(|blocks| &blocks[agent_index]);
+            let of_block = |name: &str| format!("{table}.agents[{agent_index}].{name}");
+            let (probability_key, value) = match own.and_then(|own| own.probability) {
+                Some(own) => (of_block("probability"), own),
+                None => (key("probability"), file.probability.unwrap_or(1.0)),
+            };
+            probability.push(self.number(&probability_key, value, Bounds::Share)?);
+            let (channels_key, value) = match own.and_then(|own| own.channels.as_ref()) {
+                Some(own) => (of_block("channels"), Some(own)),
+                None => (key("channels"), file.channels.as_ref()),
+            };
+            channels.push(self.struck_channels(&channels_key, value, &table, file, link, agent)?);
+        }
         Ok(Fault {
             name,
             target,
             link,
             kind,
-            probability: self.number(
-                &key("probability"),
-                file.probability.unwrap_or(1.0),
-                Bounds::Share,
-            )?,
-            channels: self.struck_channels(&table, file, link, agent)?,
+            probability,
+            channels,
             onset_s,
-            duration_s: of_agent("duration_s", &file.duration_s, Bounds::Positive)?,
-            ramp_s: of_agent("ramp_s", &file.ramp_s, Bounds::NonNegative)?,
+            duration_s,
+            ramp_s,
             parameters,
         })
+    }
+
+    /// A quantity of each agent that a fault may have or not.
+    fn perhaps(
+        &self,
+        table: &str,
+        written: Written<'_>,
+        parameter: Parameter,
+        team: usize,
+    ) -> Result<Option<Drawn>, CampaignError> {
+        let given = |agent: &usize| written.of(table, parameter.name, *agent).1.is_some();
+        match (0..team).filter(given).count() {
+            0 => Ok(None),
+            some if some < team && parameter.default.is_none() => Err(self.invalid(
+                format!("{table}.{}", parameter.name),
+                "absent",
+                "some agents have one and others do not",
+                "give it here for those that have none of their own",
+            )),
+            _ => self.of_team(table, written, parameter, team, 1).map(Some),
+        }
     }
 
     /// Which way a fault strikes.
@@ -259,14 +310,15 @@ impl Check<'_> {
     /// The channels that a fault strikes: on these actuators and this plant.
     fn struck_channels(
         &self,
+        key: &str,
+        written: Option<&ChannelsFile>,
         table: &str,
         file: &FaultFile,
         link: Link,
         agent: &Agent,
     ) -> Result<FaultChannels, CampaignError> {
-        let key = format!("{table}.channels");
-        let value = || file.channels.as_ref().map_or("\"all\"".into(), shown);
-        let channels = self.fault_channels(&key, file.channels.as_ref())?;
+        let value = || written.map_or("\"all\"".into(), shown);
+        let channels = self.fault_channels(key, written)?;
         let all = FaultChannels::These((0..self.channels.len()).collect());
         if file.target == FaultTarget::Plant {
             let whole = matches!(agent, Agent::Uav(_)) || file.kind == FaultKind::Mass;
@@ -309,15 +361,20 @@ impl Check<'_> {
     /// Refuses what begins after the run has ended.
     fn begins(
         &self,
-        key: &str,
-        value: Option<&Value>,
+        table: &str,
+        written: Written<'_>,
         onset_s: &Drawn,
         time: Time,
     ) -> Result<(), CampaignError> {
-        let supports = onset_s.distributions.iter().map(Distribution::support);
-        let last = supports.map(|(_, high)| high).fold(0.0, f64::max);
-        match value {
-            Some(value) if time.onset_step(last) >= time.steps => {
+        let latest =
+            |own: &[Distribution]| own.iter().map(|own| own.support().1).fold(0.0, f64::max);
+        let of_agents = onset_s.distributions.chunks(onset_s.channels).enumerate();
+        let mut late = of_agents.filter(|(_, own)| time.onset_step(latest(own)) >= time.steps);
+        match late
+            .next()
+            .map(|(agent, _)| written.of(table, ONSET.name, agent))
+        {
+            Some((key, Some(value))) => {
                 let last_step_s = time.shown_s(time.steps - 1);
                 Err(self.invalid(
                     key,

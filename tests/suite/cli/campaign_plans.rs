@@ -10,6 +10,14 @@ fn what_no_fault_wind_or_loop_can_be_is_refused() {
         r#"
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nduration_s = 0.0 :: fault[0].duration_s (line 58) = 0.0 ~ must be positive
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nduration_s = [1.0, 2.0] :: fault[0].duration_s (line 58) = a list of 2 ~ a quantity of the agent
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { probability = 1.5 }, {}] :: fault[0].agents[1].probability (line 58) = 1.5 ~ within [0, 1]
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { channels = [7] }, {}] :: fault[0].agents[1].channels (line 58) = [7] ~ numbers from 1 to 6
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, {}, { onset_s = 6.0 }] :: fault[0].agents[2].onset_s (line 58) = 6.0: it must begin before the end
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { duration_s = 1.0 }, {}] :: fault[0].duration_s ~ = absent: some agents have one and others do not; give it here
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { onset_s = { uniform = [1.0, 2.0], per = "channel" } }, {}] :: fault[0].agents[1].onset_s.per ~ a quantity of the agent
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { kind = "bias" }, {}] :: agents ~ unknown key `kind`
+magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, {}] :: fault[0].agents ~ 2 blocks ~ one block for each of the 3 agents
+kind = "sine"     => kind = "sine"\nagents = [{}, { probability = 0.5 }, {}] :: agents ~ unknown key `probability`
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fault[0].link (line 58) = given ~ only the network has two ways ~ target = "network"
 [verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nramp_s = 1.0\n[verdict] :: fault[2].ramp_s (line 71) = 1.0 ~ "stuck" is there or not; remove it
 [verdict] => [[fault]]\ntarget = "actuator"\nkind = "delay"\ndelay_s = 3.0\n[verdict] :: fault[2].delay_s (line 71) = up to 3 s ~ at most 1024 steps of 0.002 s are remembered, 2.048 s

@@ -370,24 +370,3 @@ fn an_interrupted_flight_and_a_missing_cross_check_are_errors_and_a_failed_one_a
     assert_eq!(counts(&found), [3, 1, 0]);
     assert!(message(&found, "failure").contains("2 flights give other numbers"));
 }
-
-#[test]
-fn a_junit_file_takes_no_name_of_the_run_and_tells_of_a_campaign_that_was_refused() {
-    let place = with(&[("ftc", "0.64")]);
-    for name in ["out/report.html", "out/summary.csv", "out/manifest.json"] {
-        let arguments = ["run", "c.toml", "--out", "out", "--junit", name];
-        place.refuses(&arguments, 2, &["--junit", name, "give another name"]);
-        assert!(!place.path(name).exists());
-    }
-    place.succeeds(&RUN);
-    let text = place.read("c.toml");
-    assert_eq!(counts(&elements(&place.read("ci/urts.xml"))), [2, 0, 0]);
-    // The file of the run before must not look as if this one had passed.
-    place.write("c.toml", text.replace("team = 3", "team = 0"));
-    let refused = place.program(&RUN);
-    assert!(refused.code == 2 && refused.stderr.contains("agent.team"));
-    let found = elements(&place.read("ci/urts.xml"));
-    assert_eq!(counts(&found), [1, 0, 1]);
-    let own = found.iter().find(|own| own.name == "error").unwrap();
-    assert!(own.attributes["message"].contains("agent.team"));
-}

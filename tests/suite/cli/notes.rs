@@ -142,6 +142,17 @@ fn a_fault_that_ends_before_it_has_come_is_told() {
 }
 
 #[test]
+fn a_fault_that_nobody_has_is_told() {
+    let with = |probability: &str| said_of(&smoke(&[("probability = 0.25", probability)]));
+    assert_eq!(
+        with("probability = 0.0"),
+        ["fault[0].probability = 0: nobody ever has actuator loss-of-effectiveness"]
+    );
+    let one = "probability = 0.0\nagents = [{}, { probability = 0.1 }, {}]";
+    assert!(with(one).is_empty());
+}
+
+#[test]
 fn check_sums_up_strata_and_tells_each_fault_with_its_target_in_one_place() {
     let place = Place::with(
         &std::fs::read_to_string(crate::common::repository("campaigns/uav-faults.toml")).unwrap(),

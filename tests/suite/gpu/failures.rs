@@ -195,6 +195,10 @@ fn an_adapter_that_does_not_exist_is_an_error_that_lists_those_that_do() {
 
 /// A campaign with more agents than a campaign file may have: the others are as the last.
 fn with_team(mut campaign: Campaign, team: usize) -> Campaign {
+    for fault in &mut campaign.faults {
+        fault.probability.resize(team, fault.probability[0]);
+        fault.channels.resize(team, fault.channels[0].clone());
+    }
     let faults = campaign.faults.iter_mut().flat_map(|fault| {
         let onset = std::iter::once(&mut fault.onset_s);
         onset.chain(&mut fault.parameters)
