@@ -3,16 +3,17 @@
 use crate::campaign::{ALL, Campaign, Distribution, Drawn, Fault, Requirement};
 use crate::comparison::LEVEL;
 use crate::reference::{AgentWalk, Reference, WaypointPath};
-use crate::statistics::{runs_needed, sequential_upper};
+use crate::statistics::{runs_needed, sequential_runs_needed};
 
 /// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached, faults that
-/// are gone before they have come.
+/// nobody has or that are gone before they have come.
 #[must_use]
 pub fn cautions(campaign: &Campaign) -> Vec<String> {
     let requirements = campaign.requirements.iter().enumerate();
     let unprovable = requirements.filter_map(|(index, own)| unprovable(campaign, index, own));
     let faults = campaign.faults.iter().enumerate();
-    let unfinished = faults.filter_map(|(index, fault)| unfinished(index, fault));
+    let unfinished =
+        faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
     unprovable
         .chain(unreached(campaign))
         .chain(unfinished)
@@ -39,7 +40,11 @@ fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> O
         ),
         _ => (u64::from(campaign.episodes), String::new()),
     };
-    let enough = episodes_needed(*limit, campaign.stop.is_some());
+    let needed = match campaign.stop {
+        Some(_) => sequential_runs_needed,
+        None => runs_needed,
+    };
+    let enough = needed(*limit, LEVEL, 0);
     if enough.is_some_and(|enough| n >= enough) {
         return None;
     }
@@ -56,29 +61,6 @@ fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> O
         "require[{index}].failure_rate_upper_95 = {limit}: {n} {episodes}{of_stratum} cannot prove it, even if {controller:?} fails \
          in none; {remedy}"
     ))
-}
-
-/// Episodes that prove a failure rate below a limit, if none of them fails; more where `[stop]` looks at them on the way.
-fn episodes_needed(limit: f64, looked_at: bool) -> Option<u64> {
-    let fixed = runs_needed(limit, LEVEL, 0)?;
-    if !looked_at {
-        return Some(fixed);
-    }
-    let proves = |n| sequential_upper(0, n, LEVEL) <= limit;
-    let (mut too_few, mut enough) = (0, fixed);
-    while !proves(enough) {
-        too_few = enough;
-        enough = enough.checked_mul(2)?;
-    }
-    while enough - too_few > 1 {
-        let middle = u64::midpoint(too_few, enough);
-        if proves(middle) {
-            enough = middle;
-        } else {
-            too_few = middle;
-        }
-    }
-    Some(enough)
 }
 
 /// When somebody sets out, how long it moves, and how long all takes that is planned, s.
@@ -122,6 +104,17 @@ fn unreached(campaign: &Campaign) -> Option<String> {
         // Not shorter than it is.
         (100.0 * takes_s).ceil() / 100.0
     ))
+}
+
+/// A fault that nobody has.
+fn absent(index: usize, fault: &Fault) -> Option<String> {
+    let never = fault.probability.iter().all(|own| *own == 0.0);
+    never.then(|| {
+        format!(
+            "fault[{index}].probability = 0: nobody ever has {}",
+            fault.name
+        )
+    })
 }
 
 /// A fault that is never there as a whole, as it ends before it has come.

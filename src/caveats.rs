@@ -1,6 +1,6 @@
 //! What has to be known to read the statistics of a run: its sampling design, and what ended it.
 
-use crate::campaign::{Campaign, Sampling};
+use crate::campaign::Campaign;
 use crate::comparison::FEWEST_REPLICATES;
 use crate::manifest::Manifest;
 use crate::stop::Stopped;
@@ -16,10 +16,7 @@ pub fn caveats(campaign: &Campaign, manifest: &Manifest) -> Vec<String> {
 }
 
 fn of_design(campaign: &Campaign, replicates: u32) -> String {
-    let design = match campaign.sampling {
-        Sampling::Sobol { .. } => "scrambled Sobol nets",
-        _ => "Latin hypercubes",
-    };
+    let design = campaign.sampling.design().replicates_noun();
     let instead = if replicates as usize >= FEWEST_REPLICATES {
         format!("the intervals here are Student's t over the {replicates} replicates")
     } else {

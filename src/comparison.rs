@@ -24,10 +24,10 @@ pub use rates::{FailureRate, MetricQuantiles, summarise};
 pub use requirements::{RequirementResult, requirements};
 pub use screening::{Harm, Screening, screen};
 pub use tables::{comparison_table, screening_table, summary_table};
-pub use verdict::{HOW_SURE, verdict};
+pub use verdict::{how_sure, verdict};
 
 use crate::campaign::Campaign;
-use crate::statistics::{Estimate, replicate_mean};
+use crate::statistics::{Estimate, replicate_mean, replicate_p};
 use crate::tables::{Scores, Status};
 use std::ops::Range;
 
@@ -36,15 +36,27 @@ pub const LEVEL: f64 = 0.95;
 /// Fewest replicates of a sampling design whose scatter gives an interval.
 pub const FEWEST_REPLICATES: usize = 5;
 
+/// What the replicates of a sampling design say of a difference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Replicated {
+    /// Mean of the replicates' estimates, with Student's t interval.
+    pub estimate: Estimate,
+    /// p-value of Student's t test that there is no difference.
+    pub p: f64,
+}
+
 /// Student's t over the estimates of replicates; none of too few, of any that is infinite, and of replicates that are all alike:
 /// such as have no failure show no scatter, and an interval of no width would claim certainty.
 #[expect(clippy::float_cmp, reason = "equal estimates, of which rates have few")]
-fn over_replicates(estimates: &[f64]) -> Option<Estimate> {
+fn over_replicates(estimates: &[f64]) -> Option<Replicated> {
     let alike = estimates.windows(2).all(|pair| pair[0] == pair[1]);
     if estimates.len() < FEWEST_REPLICATES || alike {
         return None;
     }
-    replicate_mean(estimates, LEVEL)
+    Some(Replicated {
+        estimate: replicate_mean(estimates, LEVEL)?,
+        p: replicate_p(estimates)?,
+    })
 }
 
 /// Where the values of some channels of a team's episode lie in a list of [`Scores`].

@@ -39,8 +39,13 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
         ));
     }
     for (index, result) in manifest.requirements.iter().enumerate() {
-        let unmet =
-            (!result.is_met()).then(|| (NonSuccessKind::Failure, "requirement", reason(result)));
+        let unmet = (!result.is_met()).then(|| {
+            (
+                NonSuccessKind::Failure,
+                "requirement",
+                reason(manifest, result),
+            )
+        });
         let name = format!(
             "require[{index}]: failure rate of {} below {}",
             result.subject(),

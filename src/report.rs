@@ -21,7 +21,7 @@ mod trace;
 pub use evidence::ReportError;
 pub use trace::{Trace, trace};
 
-use crate::comparison::HOW_SURE;
+use crate::comparison::how_sure;
 use crate::output::{OutputDir, REPORTS};
 use crate::shortcomings::{shortcoming, unmet};
 use document::Document;
@@ -59,7 +59,7 @@ fn document(evidence: &Evidence) -> Document {
     ];
     let mut lead = manifest.verdict.clone();
     if manifest.episodes > 1 && campaign.controllers.len() > 1 {
-        lead.push(format!("({HOW_SURE})"));
+        lead.push(format!("({})", how_sure(campaign)));
     }
     Document {
         title: manifest.name.clone(),

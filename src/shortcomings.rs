@@ -4,7 +4,7 @@ use crate::campaign::ALL;
 use crate::comparison::{LEVEL, RequirementResult};
 use crate::cross_check::{ERROR_LIMIT, RMSE_LIMIT};
 use crate::manifest::Manifest;
-use crate::statistics::runs_needed;
+use crate::statistics::{runs_needed, sequential_runs_needed};
 use crate::words::rounded_up;
 use std::path::Path;
 
@@ -75,7 +75,7 @@ pub fn unmet(manifest: &Manifest) -> Option<String> {
                 "{}: require[{index}].failure_rate_upper_95 = {}: {}",
                 manifest.campaign_path,
                 result.limit,
-                reason(result)
+                reason(manifest, result)
             )
         })
         .collect();
@@ -83,13 +83,17 @@ pub fn unmet(manifest: &Manifest) -> Option<String> {
 }
 
 /// Why a requirement does not hold, and what to do.
-pub(crate) fn reason(result: &RequirementResult) -> String {
+pub(crate) fn reason(manifest: &Manifest, result: &RequirementResult) -> String {
     let place = if result.stratum == ALL {
         String::new()
     } else {
         format!(" of the stratum {:?}", result.stratum)
     };
-    let remedy = match runs_needed(result.limit, LEVEL, result.failed) {
+    let needed = match manifest.stopped {
+        Some(_) => sequential_runs_needed,
+        None => runs_needed,
+    };
+    let remedy = match needed(result.limit, LEVEL, result.failed) {
         Some(enough) if result.failed == 0 => format!("fly at least {enough} episodes"),
         Some(enough) if result.rate() < result.limit => format!(
             "fly at least {enough} episodes, of which no more may fail, or change the controller or the limit"

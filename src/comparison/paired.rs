@@ -1,7 +1,7 @@
 //! How pairs of controllers compare on the same episodes.
 
 use super::strata::{Part, parts, replicates};
-use super::{LEVEL, Layout, over_replicates};
+use super::{LEVEL, Layout, Replicated, over_replicates};
 use crate::campaign::Campaign;
 use crate::sampling::{Method, allows};
 use crate::statistics::{
@@ -37,6 +37,8 @@ pub struct PairedComparison {
     pub p_holm: Option<f64>,
     /// Failure rate of `a` minus that of `b`.
     pub difference: Option<Measured>,
+    /// Student's t of that difference over the replicates of a sampling design, if there are enough of them.
+    pub over_replicates: Option<Replicated>,
     /// RMS errors, by channel group and by channel.
     pub ratios: Vec<Ratio>,
 }
@@ -52,7 +54,7 @@ pub struct Ratio {
     pub log_ratio: Option<Measured>,
     /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is the mean of
     /// their medians.
-    pub over_replicates: Option<Estimate>,
+    pub over_replicates: Option<Replicated>,
     /// Mid-p of the sign test of that median, of independent draws.
     pub sign_p: Option<f64>,
     /// Share of the episodes in which `a` is better; ties count half.
@@ -61,12 +63,32 @@ pub struct Ratio {
     pub diverged: [u64; 3],
 }
 
+impl PairedComparison {
+    /// The difference of the failure rates with the interval that the sampling design allows: over its replicates where it has
+    /// them.
+    #[must_use]
+    pub fn known(&self) -> Option<Measured> {
+        known(self.difference, self.over_replicates)
+    }
+
+    /// p-value of equal failure rates, by the test that the sampling design allows.
+    #[must_use]
+    pub fn p(&self) -> Option<f64> {
+        self.mid_p.or(self.over_replicates.map(|found| found.p))
+    }
+}
+
 impl Ratio {
     /// The log-ratio with the interval that the sampling design allows: over its replicates where it has them.
     #[must_use]
     pub fn known(&self) -> Option<Measured> {
-        let over_replicates = self.over_replicates.map(|found| measured(found, true));
-        over_replicates.or(self.log_ratio)
+        known(self.log_ratio, self.over_replicates)
+    }
+
+    /// p-value of equal errors, by the test that the sampling design allows.
+    #[must_use]
+    pub fn p(&self) -> Option<f64> {
+        self.sign_p.or(self.over_replicates.map(|found| found.p))
     }
 }
 
@@ -107,6 +129,12 @@ fn compare_pair(
     let paired = allows(campaign.sampling.design(), Method::Paired);
     let of_part = |part: &Part| {
         let failures = paired_failures(scores, [a, b], &part.episodes);
+        let difference = |episodes: &Vec<usize>| {
+            let failures = paired_failures(scores, [a, b], episodes);
+            Some(paired_difference(&failures, LEVEL)?.value)
+        };
+        let of_replicates = replicates(campaign, &part.episodes);
+        let differences: Option<Vec<f64>> = of_replicates.iter().map(difference).collect();
         PairedComparison {
             a: campaign.controllers[a].clone(),
             b: campaign.controllers[b].clone(),
@@ -114,6 +142,7 @@ fn compare_pair(
             mid_p: paired.then(|| mcnemar_mid_p(failures.only_a, failures.only_b)),
             p_holm: None,
             difference: paired_difference(&failures, LEVEL).map(|found| measured(found, paired)),
+            over_replicates: differences.and_then(|own| over_replicates(&own)),
             failures,
             ratios: series
                 .iter()
@@ -124,6 +153,14 @@ fn compare_pair(
         }
     };
     parts.iter().map(of_part).collect()
+}
+
+fn known(
+    measured_at_once: Option<Measured>,
+    over_replicates: Option<Replicated>,
+) -> Option<Measured> {
+    let over_replicates = over_replicates.map(|found| measured(found.estimate, true));
+    over_replicates.or(measured_at_once)
 }
 
 fn measured(estimate: Estimate, with_interval: bool) -> Measured {

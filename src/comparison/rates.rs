@@ -90,8 +90,8 @@ impl FailureRate {
             wilson: fixed.then(|| wilson(failed, n, LEVEL)),
             sequential: stopped.then(|| sequential_interval(failed, n, LEVEL)),
             replicates: over_replicates.map(|found| Interval {
-                lower: found.interval.lower.max(0.0),
-                upper: found.interval.upper.min(1.0),
+                lower: found.estimate.interval.lower.max(0.0),
+                upper: found.estimate.interval.upper.min(1.0),
             }),
             upper_95: match (fixed, stopped) {
                 (true, _) => Some(clopper_pearson_upper(failed, n, LEVEL)),

@@ -1,6 +1,6 @@
 //! The summary, the comparisons and the screening as tables.
 
-use super::{Measured, MetricQuantiles, PairedComparison, Screening};
+use super::{Measured, MetricQuantiles, PairedComparison, Replicated, Screening};
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, Interval};
 use crate::tables::{Row, Table};
@@ -70,11 +70,19 @@ pub fn comparison_table(campaign: &Campaign, comparisons: &[PairedComparison]) -
                 comparison.difference,
                 plain,
             );
+            let over_replicates = |row: &mut _, name, found: Option<Replicated>| {
+                if campaign.sampling.replicates().is_some() {
+                    estimate(row, name, found.map(|found| found.estimate));
+                }
+            };
+            over_replicates(
+                &mut row,
+                "failure_rate_difference_replicates",
+                comparison.over_replicates,
+            );
             measured(&mut row, "log_ratio", ratio.log_ratio, plain);
             measured(&mut row, "ratio", ratio.log_ratio, f64::exp);
-            if campaign.sampling.replicates().is_some() {
-                estimate(&mut row, "log_ratio_replicates", ratio.over_replicates);
-            }
+            over_replicates(&mut row, "log_ratio_replicates", ratio.over_replicates);
             measured(&mut row, "win_rate", ratio.win_rate, plain);
             row.count(|| "only_a_diverged".into(), only_a)
                 .count(|| "only_b_diverged".into(), only_b)

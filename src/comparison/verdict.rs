@@ -3,7 +3,7 @@
 use super::LEVEL;
 use super::paired::{PairedComparison, Ratio};
 use super::rates::MetricQuantiles;
-use crate::campaign::ALL;
+use crate::campaign::{ALL, Campaign};
 use crate::statistics::Interval;
 use crate::words::rounded_up;
 
@@ -16,12 +16,21 @@ enum Side {
 }
 
 /// How sure the sentences of [`verdict`] are.
-pub const HOW_SURE: &str = "better and worse are said where exact tests agree, at 5 % for all these statements together; intervals 95 %";
+#[must_use]
+pub fn how_sure(campaign: &Campaign) -> String {
+    let tests = match campaign.sampling.replicates() {
+        None => "exact tests agree",
+        Some(_) => "Student's t over the replicates leaves no doubt",
+    };
+    format!(
+        "better and worse are said where {tests}, at 5 % for all these statements together; intervals 95 %"
+    )
+}
 
 /// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how often it
-/// fails if it is the only one. "Better" and "worse" are said where the 95 % interval and an exact test (McNemar's mid-p of the
-/// failures, the sign test of the errors; at 5 % over the number of all that is looked at) leave no doubt; each sentence has the
-/// numbers that it stands on.
+/// fails if it is the only one. "Better" and "worse" are said where the 95 % interval and a test (McNemar's mid-p of the failures,
+/// the sign test of the errors, Student's t over the replicates of a design; at 5 % over the number of all that is looked at) leave
+/// no doubt; each sentence has the numbers that it stands on.
 #[must_use]
 pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
     let first = comparisons.first().map(|own| &own.a);
@@ -66,6 +75,7 @@ fn of_pair(pair: &PairedComparison, looks: usize) -> String {
         return of_one_episode(pair);
     }
     let (by_failures, failing) = failing(pair, n, looks);
+    let known = pair.known().is_some_and(|found| found.interval.is_some());
     let (sides, errors): (Vec<Option<Side>>, Vec<String>) =
         groups(pair).map(|group| error_of(group, looks)).unzip();
     let errors = match sides.iter().all(|own| *own == Some(Side::Unsure)) {
@@ -85,6 +95,9 @@ fn of_pair(pair: &PairedComparison, looks: usize) -> String {
             format!("{a} fails less often than {b}, but follows less closely")
         }
         (true, true) => format!("{a} is in part better and in part worse than {b}"),
+        (false, false) if !known && sides.iter().all(Option::is_none) => {
+            format!("nothing here says how sure a difference between {a} and {b} is")
+        }
         (false, false) => format!("{n} episodes do not tell {a} and {b} apart"),
     };
     format!("{opening}: {failing}; in the median its RMS error is {errors}")
@@ -130,10 +143,10 @@ fn failing(pair: &PairedComparison, n: u64, looks: usize) -> (Side, String) {
         percent(of_a),
         percent(of_b)
     );
-    let interval = pair.difference.and_then(|found| found.interval);
+    let interval = pair.known().and_then(|found| found.interval);
     // Fewer failures are better.
     let side = interval.map_or(Side::Unsure, |own| {
-        sure(side(-own.upper, -own.lower), pair.mid_p, looks)
+        sure(side(-own.upper, -own.lower), pair.p(), looks)
     });
     let value = percent(of_a) - percent(of_b);
     let points = match interval {
@@ -156,7 +169,7 @@ fn error_of(ratio: &Ratio, looks: usize) -> (Option<Side>, String) {
     let name = &ratio.name;
     let found = ratio.known();
     let interval = found.and_then(|found| found.interval);
-    let side = interval.map(|own| sure(side(own.lower, own.upper), ratio.sign_p, looks));
+    let side = interval.map(|own| sure(side(own.lower, own.upper), ratio.p(), looks));
     let words = match (side, found) {
         (_, None) => format!("unknown in {name}"),
         (None, Some(found)) => format!("{} in {name} (no interval)", times(found.value, None)),
@@ -166,7 +179,7 @@ fn error_of(ratio: &Ratio, looks: usize) -> (Option<Side>, String) {
     (side, words)
 }
 
-/// A side, if its test (where the sampling design has one) agrees with so many looks at the data.
+/// A side, if its test agrees with so many looks at the data.
 fn sure(side: Side, p: Option<f64>, looks: usize) -> Side {
     match p {
         Some(p) if p * looks as f64 > 1.0 - LEVEL => Side::Unsure,

@@ -19,6 +19,10 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
     }
     let replicates = evidence.campaign.sampling.replicates().is_some();
     let known = (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
+    let difference = match replicates {
+        true => "failure_rate_difference_replicates",
+        false => "failure_rate_difference",
+    };
     let (log_ratio, interval) = match (replicates, known) {
         (true, true) => (
             "log_ratio_replicates",
@@ -58,8 +62,8 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
                 Cell::number(format!("{:.0}", of("both_failed"))),
                 Cell::number(words::points(
                     of("failure_rate_difference"),
-                    of("failure_rate_difference_lower"),
-                    of("failure_rate_difference_upper"),
+                    of(&format!("{difference}_lower")),
+                    of(&format!("{difference}_upper")),
                 )),
                 Cell::number(words::p_value(of("mcnemar_mid_p"))),
                 Cell::number(words::p_value(of("mcnemar_mid_p_holm"))),

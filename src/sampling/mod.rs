@@ -55,6 +55,16 @@ pub enum Design {
 impl Design {
     /// All designs.
     pub const ALL: [Self; 3] = [Self::Independent, Self::LatinHypercube, Self::Sobol];
+
+    /// What its replicates are called.
+    #[must_use]
+    pub fn replicates_noun(self) -> &'static str {
+        match self {
+            Self::Independent => "independent draws",
+            Self::LatinHypercube => "Latin hypercubes",
+            Self::Sobol => "scrambled Sobol nets",
+        }
+    }
 }
 
 /// Kinds of statistics, by what they take for granted of the episodes.

@@ -2,18 +2,19 @@
 
 use super::line;
 use super::style::{heading, judged};
-use urts_mc::comparison::{HOW_SURE, RequirementResult};
+use urts_mc::campaign::Campaign;
+use urts_mc::comparison::{RequirementResult, how_sure};
 use urts_mc::run::Findings;
 use urts_mc::words::rounded_up;
 
 /// Who does better, in a sentence each.
-pub(super) fn in_short(findings: &Findings) -> String {
+pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> String {
     let mut text = String::new();
     let sentences = &findings.manifest.verdict;
     if !sentences.is_empty() {
         let sure = match findings.manifest.episodes {
             1 => String::new(),
-            _ => format!(" ({HOW_SURE})"),
+            _ => format!(" ({})", how_sure(campaign)),
         };
         line(&mut text, &format!("\n{}{sure}", heading("in short")));
     }

@@ -200,7 +200,7 @@ pub(crate) fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> 
     }
     text.push_str(&what_matters(campaign, findings));
     text.push_str(&worst(findings, out));
-    text.push_str(&in_short(findings));
+    text.push_str(&in_short(campaign, findings));
     text.push_str(&requirements(&manifest.requirements));
     let times = manifest.times;
     line(
@@ -361,7 +361,7 @@ fn times(log_ratio: f64) -> String {
 
 fn failures_text(comparison: &PairedComparison) -> String {
     let failures = &comparison.failures;
-    let difference = comparison.difference.map_or(String::new(), |difference| {
+    let difference = comparison.known().map_or(String::new(), |difference| {
         let interval = difference.interval.map_or(String::new(), |interval| {
             format!(
                 " [{:+.2}, {:+.2}]",

@@ -1,13 +1,18 @@
 //! What a run found, for programs.
 
 use serde_json::{Value, json};
-use urts_mc::comparison::{FailureRate, Measured};
+use urts_mc::comparison::{FailureRate, Measured, Replicated};
 use urts_mc::run::Findings;
 use urts_mc::statistics::{Estimate, Interval};
 
 /// The findings of a run for programs.
 pub(crate) fn findings_json(findings: &Findings) -> Value {
     let interval = |interval: Interval| json!([finite(interval.lower), finite(interval.upper)]);
+    let replicated = |found: Option<Replicated>| {
+        found.map(|Replicated { estimate, p }| {
+            json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval), "p": p })
+        })
+    };
     let estimate = |estimate: Option<Estimate>| {
         estimate.map(|estimate| json!({ "value": finite(estimate.value), "interval_95": interval(estimate.interval) }))
     };
@@ -44,9 +49,10 @@ pub(crate) fn findings_json(findings: &Findings) -> Value {
             "only_b_failed": comparison.failures.only_b, "neither_failed": comparison.failures.neither,
             "mcnemar_mid_p": comparison.mid_p, "mcnemar_mid_p_holm": comparison.p_holm,
             "failure_rate_difference": measured(comparison.difference),
+            "failure_rate_difference_replicates": replicated(comparison.over_replicates),
             "log_ratios": comparison.ratios.iter().map(|ratio| json!({
                 "scope": ratio.scope, "name": ratio.name, "log_ratio": measured(ratio.log_ratio),
-                "log_ratio_replicates": estimate(ratio.over_replicates), "win_rate": measured(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
+                "log_ratio_replicates": replicated(ratio.over_replicates), "win_rate": measured(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "screening": findings.screenings.iter().map(|screening| json!({

@@ -4,7 +4,7 @@ use super::drawn::{drawn, drawn_json};
 use super::effort::{lasting, seconds, steps};
 use super::line;
 use serde_json::{Value, json};
-use urts_mc::campaign::{Campaign, Goal, Stratum, StratumFaults};
+use urts_mc::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
 use urts_mc::cautions::cautions;
 use urts_mc::gains::GainSet;
 
@@ -78,8 +78,8 @@ fn design(campaign: &Campaign) -> Vec<String> {
     strata(campaign, &mut sentences);
     if let Some(replicates) = campaign.sampling.replicates() {
         sentences.push(format!(
-            "sampling: {:?}, {replicates} replicates of {} episodes",
-            campaign.sampling.design(),
+            "draws: {replicates} {} of {} episodes",
+            campaign.sampling.design().replicates_noun(),
             campaign.episodes / replicates.max(1)
         ));
     }
@@ -122,7 +122,8 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             }
             if let count @ 2.. = names.len() {
                 sentences.push(format!(
-                    "{count} strata of {share} of every {turn} episodes, in each one fault in every agent: {}",
+                    "{count} strata of {share} of every {turn} episodes, in each one fault in {}: {}",
+                    whom(&campaign.faults.iter().collect::<Vec<_>>()),
                     names.join(", ")
                 ));
                 continue;
@@ -132,15 +133,25 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
             StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
             StratumFaults::Certain(faults) => {
-                let names = faults.iter().filter_map(|&k| campaign.faults.get(k));
-                let names: Vec<&str> = names.map(|fault| &*fault.name).collect();
-                format!("{} in every agent", names.join(" + "))
+                let faults = faults.iter().filter_map(|&k| campaign.faults.get(k));
+                let faults: Vec<&Fault> = faults.collect();
+                let names: Vec<&str> = faults.iter().map(|fault| &*fault.name).collect();
+                format!("{} in {}", names.join(" + "), whom(&faults))
             }
         };
         sentences.push(format!(
             "stratum {:?}: {share} of every {turn} episodes, {faults}",
             stratum.name
         ));
+    }
+}
+
+/// Who has faults that a stratum makes certain.
+fn whom(faults: &[&Fault]) -> &'static str {
+    if faults.iter().any(|fault| fault.spares_some()) {
+        "every agent whose probability of it is not 0"
+    } else {
+        "every agent"
     }
 }
 

@@ -19,7 +19,7 @@
 //! | may a run stop as soon as it is proved? | [`sequential_proof`], [`sequential_interval`] | confidence sequence |
 //! | which parameter matters? | [`effects`], [`spearman`], [`somers_d`] | ranks, permutations |
 //! | which of many effects are real? | [`holm`] | Holm's step-down |
-//! | what do replicates of a design say? | [`replicate_mean`] | Student's t |
+//! | what do replicates of a design say? | [`replicate_mean`], [`replicate_p`] | Student's t |
 //!
 //! Counts beyond their total are read as the total. A `level` is a two-sided confidence level in
 //! (0, 1) unless a function says otherwise; any other level is a demand for certainty, which only
@@ -49,10 +49,11 @@ pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval};
 pub use rank::Ranked;
-pub use replicates::replicate_mean;
+pub use replicates::{replicate_mean, replicate_p};
 pub use sample_size::{failures_allowed, power, runs_needed};
 pub use sequential::{
-    Proof, sequential_interval, sequential_lower, sequential_proof, sequential_upper,
+    Proof, sequential_interval, sequential_lower, sequential_proof, sequential_runs_needed,
+    sequential_upper,
 };
 
 /// A confidence interval; both ends belong to it.

@@ -22,7 +22,14 @@ pub fn runs_needed(failure_rate: f64, confidence: f64, failures_allowed: u64) ->
     if !is_level(failure_rate) || !is_level(confidence) {
         return None;
     }
-    let proves = |n: u64| proves(failures_allowed, n, failure_rate, confidence);
+    fewest_runs(failures_allowed, |n| {
+        proves(failures_allowed, n, failure_rate, confidence)
+    })
+}
+
+/// The smallest number of runs, up to 2^53, that proves a claim with so many failures in them; each further run makes the proof
+/// easier.
+pub(super) fn fewest_runs(failures_allowed: u64, proves: impl Fn(u64) -> bool) -> Option<u64> {
     // As many runs as failures prove nothing.
     let mut too_few = failures_allowed;
     let mut enough = failures_allowed.checked_add(1)?;

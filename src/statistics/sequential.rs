@@ -24,6 +24,7 @@
 //! without a failure it proves 1 % at 95 % after 449 episodes (a fixed number: 299), whereas a
 //! mixture over all of [0, 1] needs 984.
 
+use super::sample_size::fewest_runs;
 use super::{Interval, binomial, bisect, is_level};
 
 /// What a look at a running campaign has proved about its failure rate.
@@ -69,6 +70,19 @@ pub fn sequential_interval(failures: u64, n: u64, level: f64) -> Interval {
         lower: sequential_lower(failures, n, one_sided),
         upper: sequential_upper(failures, n, one_sided),
     }
+}
+
+/// The smallest number of episodes in which `failures_allowed` failures prove with [`sequential_upper`] that the failure rate is
+/// at most `failure_rate`: what [`runs_needed`](super::runs_needed) is for a fixed number of them.
+///
+/// `None` where no number of episodes up to 2^53 is enough, or for a rate or level outside (0, 1).
+pub fn sequential_runs_needed(failure_rate: f64, level: f64, failures_allowed: u64) -> Option<u64> {
+    if !is_level(failure_rate) || !is_level(level) {
+        return None;
+    }
+    fewest_runs(failures_allowed, |n| {
+        is_proved_below(failure_rate, failures_allowed, n, level)
+    })
 }
 
 /// What `failures` in `n` episodes prove about the failure rate and `limit`, however often and at

@@ -22,7 +22,7 @@ pub(super) fn t_quantile(freedom: f64, level: f64) -> Option<f64> {
 }
 
 /// P(T^2 > `square` x `freedom`) = I_x(freedom / 2, 1 / 2) with x = 1 / (1 + `square`) (DLMF 8.17).
-fn two_sided_tail(square: f64, freedom: f64) -> f64 {
+pub(super) fn two_sided_tail(square: f64, freedom: f64) -> f64 {
     let (a, b) = (freedom / 2.0, 0.5);
     let (x, y) = (1.0 / (1.0 + square), square / (1.0 + square));
     let scale = (-a * square.ln_1p() + b * y.ln() - ln_beta(a, b)).exp();

@@ -220,11 +220,21 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         assert!((t.upper - (0.4375 + half_width)).abs() < 1e-6, "{t:?}");
         // Log-ratios 0 to 7.
         let ratio = &comparisons[0].ratios[0];
-        let t = ratio.over_replicates.unwrap();
-        let half_width = 2.364_624 * 0.75_f64.sqrt();
+        let found = ratio.over_replicates.unwrap();
+        let (t, half_width) = (found.estimate, 2.364_624 * 0.75_f64.sqrt());
         assert!(
             (t.value - 3.5).abs() < 1e-9 && (t.interval.lower - (3.5 - half_width)).abs() < 1e-5
         );
+        // t = 3.5 / sqrt(0.75) = 4.0415 of 7 degrees of freedom.
+        assert!((found.p - 0.004_926).abs() < 5e-6, "{}", found.p);
+        // The other never fails: the difference is the rate.
+        let found = comparisons[0].over_replicates.unwrap();
+        assert_eq!(
+            comparisons[0].known().unwrap().interval,
+            Some(found.estimate.interval)
+        );
+        assert!((found.estimate.interval.lower - rate.replicates.unwrap().lower).abs() < 1e-12);
+        assert!((found.p - 0.004_926).abs() < 5e-6, "{}", found.p);
         // A controller that never fails shows no scatter, which proves nothing.
         let of_all = || {
             summary
@@ -234,9 +244,26 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         };
         assert!(of_all().all(|rate| rate.replicates.is_some() == (rate.controller == "ftc")));
 
+        // Student's t decides, at 5 % over the three things that are looked at: 0.005 is enough.
+        let said = verdict(&summary, &comparisons);
+        let words = "ftc fails less often";
+        assert!(!said[0].contains(words), "{said:?}");
+        assert!(
+            said[0].starts_with("ftc follows more closely than pid, but fails more often: "),
+            "{said:?}"
+        );
+        assert!(
+            said[0].contains("(+43.8 points [+18.2, +69.3])"),
+            "{said:?}"
+        );
         // What no interval tells is not called unclear.
-        let said = verdict(&summary, &comparisons).join("");
+        let few = sampled(design, 4, 64);
+        let said = verdict(&summarise(&few, &scores), &compare(&few, &scores)).join("");
         assert!(said.contains(" points, no interval)"), "{said}");
+        assert!(
+            said.starts_with("nothing here says how sure a difference between ftc and pid is: "),
+            "{said}"
+        );
         assert!(!said.contains("no clear difference"), "{said}");
 
         let summary = summary_table(&campaign, &summary);
@@ -250,6 +277,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
                     "failure_rate_difference",
                     "log_ratio",
                     "win_rate",
+                    "failure_rate_difference_replicates_lower",
                     "log_ratio_replicates_lower",
                 ],
             ),

@@ -1,7 +1,8 @@
 //! Colours, quiet commands, and JSON.
 
 use super::{Ended, Place};
-use urts_mc::comparison::HOW_SURE;
+use urts_mc::campaign::Campaign;
+use urts_mc::comparison::how_sure;
 use urts_mc::replay::command;
 
 const ESCAPE: char = '\x1b';
@@ -94,7 +95,9 @@ fn a_quiet_command_prints_nothing_but_errors_and_what_json_asks_for() {
 fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
     let place = Place::smoke(&[("[verdict]", REQUIRE), ("episodes = 3", "episodes = 16")]);
     let said = place.program(&["run", "c.toml", "--out", "out"]).stdout;
-    let end = said.split(&format!("\nin short ({HOW_SURE})\n")).nth(1);
+    let sure = how_sure(&Campaign::load(&place.path("c.toml")).unwrap());
+    assert!(sure.contains("exact tests agree"));
+    let end = said.split(&format!("\nin short ({sure})\n")).nth(1);
     let lines: Vec<&str> = end.unwrap().lines().collect();
     assert!(lines[0].starts_with(
         "  ftc does better than pid: it fails in 0.0 % of the episodes, the other in "

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use urts_mc::statistics::{
-    Proof, clopper_pearson, failures_allowed, sequential_interval, sequential_lower,
-    sequential_proof, sequential_upper,
+    Proof, clopper_pearson, failures_allowed, runs_needed, sequential_interval, sequential_lower,
+    sequential_proof, sequential_runs_needed, sequential_upper,
 };
 
 use super::{count, for_each_case, holds, number, random::SplitMix64};
@@ -202,4 +202,21 @@ proptest! {
         // Rounding of 1 - x and of binomial probabilities with exchanged arguments.
         prop_assert!((interval.lower + mirrored.upper - 1.0).abs() < 1e-9);
     }
+}
+
+#[test]
+fn the_fewest_episodes_of_a_sequential_claim_are_the_first_whose_bound_is_low_enough() {
+    // Without a failure: solved by hand in src/statistics/sequential.rs.
+    for (rate, episodes) in [(0.01, 449), (0.05, 88)] {
+        assert_eq!(sequential_runs_needed(rate, 0.95, 0), Some(episodes));
+    }
+    for failures in [0, 1, 4, 30] {
+        let n = sequential_runs_needed(0.1, 0.95, failures).unwrap();
+        assert!(sequential_upper(failures, n, 0.95) <= 0.1);
+        assert!(sequential_upper(failures, n - 1, 0.95) > 0.1);
+        // Looking again and again has its price.
+        assert!(n > runs_needed(0.1, 0.95, failures).unwrap());
+    }
+    assert_eq!(sequential_runs_needed(0.0, 0.95, 0), None);
+    assert_eq!(sequential_runs_needed(0.1, 1.0, 0), None);
 }
