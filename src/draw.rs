@@ -162,10 +162,10 @@ impl Draws<'_> {
     fn fault(&self, fault: &crate::campaign::Fault, entry: u32, agent: usize) -> FaultDraw {
         let unit = |index| self.unit(Stream::Fault, entry, index, Per::Agent, agent, 0);
         let occurs = match self.stratum.map(|stratum| &stratum.faults) {
-            None | Some(StratumFaults::Drawn) => unit(OCCURRENCE) < fault.probability[agent],
-            Some(StratumFaults::Certain(faults)) => {
+            Some(StratumFaults::Certain(faults)) if !fault.background => {
                 faults.contains(&(entry as usize)) && fault.probability[agent] > 0.0
             }
+            _ => unit(OCCURRENCE) < fault.probability[agent],
         };
         #[expect(
             clippy::cast_possible_truncation,

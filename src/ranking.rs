@@ -140,6 +140,7 @@ pub(crate) fn by_chance(
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::Drawn;
     let strata = &campaign.strata;
     let only_drawn = match fault_of(condition) {
+        Some((fault, _)) if campaign.faults[fault].background => false,
         Some((_, "agents")) => !strata.is_empty(),
         Some(_) => strata.all().iter().any(draws),
         None => false,

@@ -57,6 +57,7 @@ pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
         link: _,
         kind,
         probability: _,
+        background: _,
         channels: _,
         onset_s: _,
         duration_s: _,

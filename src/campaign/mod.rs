@@ -342,6 +342,8 @@ pub struct Fault {
     pub kind: FaultKind,
     /// Probability that an agent has it, per agent; 0: never, whatever a stratum says.
     pub probability: Vec<f64>,
+    /// Whether strata leave it as it is.
+    pub background: bool,
     /// Where; per agent.
     pub channels: Vec<FaultChannels>,
     /// When, s; one value per agent.

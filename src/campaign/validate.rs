@@ -65,7 +65,7 @@ pub(super) fn validate(
     let synthesis = check.synthesis(&file.synthesis, &agent)?;
     let fault_names = check.fault_names(&file.fault)?;
     let controllers = check.controllers(file.controllers.as_deref(), &synthesis)?;
-    let strata = check.strata(&file.strata, &fault_names, file.episodes)?;
+    let strata = check.strata(&file.strata, &file.fault, &fault_names, file.episodes)?;
     let sampling = check.sampling(&file)?;
     Ok(Campaign {
         path: path.to_path_buf(),

@@ -144,6 +144,14 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             stratum.name
         ));
     }
+    let background = campaign.faults.iter().filter(|fault| fault.background);
+    let background: Vec<&str> = background.map(|fault| &*fault.name).collect();
+    if !background.is_empty() && !all.is_empty() {
+        sentences.push(format!(
+            "in the background of all strata, each with its own probability: {}",
+            background.join(", ")
+        ));
+    }
 }
 
 /// Who has faults that a stratum makes certain.

@@ -261,3 +261,50 @@ fn a_stratum_spares_whom_a_fault_never_strikes() {
         assert_eq!(occurs, [certain, false, certain], "episode {episode}");
     }
 }
+
+#[test]
+fn a_background_is_in_all_strata_and_none_of_its_own() {
+    let more = "[[fault]]\nname = \"noise\"\ntarget = \"sensor\"\nkind = \"noise\"\nstd = 0.001\nprobability = 0.5\nbackground = true\n";
+    let with = |strata: &str| {
+        altered(
+            "smoke",
+            &[("[verdict]", &format!("{more}{strata}[verdict]"))],
+        )
+    };
+    let strata = "[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []\n";
+    let (divided, whole) = (with(strata), with(""));
+    let names = divided.strata.all().iter().map(|own| own.name.to_string());
+    let names: Vec<String> = names.collect();
+    assert_eq!(
+        names,
+        [
+            "actuator loss-of-effectiveness",
+            "sensor smoothed-square",
+            "none"
+        ]
+    );
+    let mut had = [0; 3];
+    for episode in 0..96 {
+        // As it is drawn without strata, and whatever the stratum.
+        let occurs = |campaign: &Campaign| {
+            let agents = draw(campaign, episode).agents;
+            agents
+                .iter()
+                .map(|own| own.faults[2].occurs())
+                .collect::<Vec<bool>>()
+        };
+        assert_eq!(occurs(&divided), occurs(&whole));
+        let stratum = divided.strata.index(episode).unwrap();
+        had[stratum] += occurs(&divided).iter().filter(|own| **own).count();
+    }
+    // Half of 96 agents each; beyond four standard deviations of 4.9 by chance once in 16,000.
+    assert!(had.iter().all(|own| (29..=67).contains(own)), "{had:?}");
+    // It is left to chance, and may be ranked, in all of them.
+    let mut short = with(strata);
+    short.set_episodes(48).unwrap();
+    let ranking = rank(&short, &tables(&short, Precision::F32).scores);
+    let of_noise = ranking
+        .iter()
+        .filter(|own| own.condition == "fault2_agents");
+    assert!(of_noise.clone().count() > 0 && of_noise.clone().all(|own| own.effect.n == 48));
+}

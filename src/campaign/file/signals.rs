@@ -93,6 +93,9 @@ pub struct FaultFile {
     pub kind: FaultKind,
     /// Probability that an agent has this fault (default 1); 0: never, not in a stratum of this fault either.
     pub probability: Option<f64>,
+    /// Whether it is part of the background, such as measurement noise: it has its probability in every stratum, and none of its
+    /// own (default false).
+    pub background: Option<bool>,
     /// The channels that fail (default "all").
     pub channels: Option<ChannelsFile>,
     /// Network: which way is struck (default "command").

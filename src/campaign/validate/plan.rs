@@ -68,13 +68,20 @@ impl Check<'_> {
         ))
     }
 
-    /// The strata; `faults` are the names of the faults.
+    /// The strata of these faults, which have these names.
     pub(super) fn strata(
         &self,
         files: &[StratumFile],
-        faults: &[Arc<str>],
+        faults: &[FaultFile],
+        names: &[Arc<str>],
         episodes: u32,
     ) -> Result<Strata, CampaignError> {
+        let background = |fault: &FaultFile| fault.background == Some(true);
+        let faults: Vec<(Arc<str>, bool)> = names
+            .iter()
+            .cloned()
+            .zip(faults.iter().map(background))
+            .collect();
         let mut list: Vec<Stratum> = Vec::new();
         for (index, file) in files.iter().enumerate() {
             let table = format!("strata[{index}]");
@@ -87,7 +94,7 @@ impl Check<'_> {
                     "give the episodes relative to the other strata, or remove the stratum",
                 ));
             }
-            for (name, faults) in self.stratum(&table, file, faults)? {
+            for (name, faults) in self.stratum(&table, file, &faults)? {
                 let key = match file.name {
                     Some(_) => format!("{table}.name"),
                     None => table.clone(),
@@ -126,12 +133,13 @@ impl Check<'_> {
         Ok(strata)
     }
 
-    /// The name and the faults of each stratum that a table stands for.
+    /// The name and the faults of each stratum that a table stands for. Of the campaign's faults, the second says whether it is
+    /// part of the background.
     fn stratum(
         &self,
         table: &str,
         file: &StratumFile,
-        faults: &[Arc<str>],
+        faults: &[(Arc<str>, bool)],
     ) -> Result<Vec<(Arc<str>, StratumFaults)>, CampaignError> {
         let key = format!("{table}.faults");
         let name = |default: &str| Arc::from(file.name.as_deref().unwrap_or(default));
@@ -140,11 +148,11 @@ impl Check<'_> {
         }
         match &file.faults {
             StratumFaultsFile::Word(word) if word == "all" || word == "each" => {
-                if faults.is_empty() {
+                if faults.iter().all(|(_, background)| *background) {
                     return Err(self.invalid(
                         key,
                         format!("{word:?}"),
-                        "the campaign has no faults",
+                        "the campaign has no faults beside a background",
                         "add a [[fault]], or write []",
                     ));
                 }
@@ -159,9 +167,11 @@ impl Check<'_> {
                         "remove it",
                     ));
                 }
+                let own = faults.iter().enumerate();
+                let own = own.filter(|(_, (_, background))| !background);
                 let alone =
-                    |(k, name): (usize, &Arc<str>)| (name.clone(), StratumFaults::Certain(vec![k]));
-                Ok(faults.iter().enumerate().map(alone).collect())
+                    own.map(|(k, (name, _))| (name.clone(), StratumFaults::Certain(vec![k])));
+                Ok(alone.collect())
             }
             StratumFaultsFile::Word(word) => Err(self.invalid(
                 key,
@@ -173,13 +183,21 @@ impl Check<'_> {
                 let mut certain = Vec::new();
                 for (place, own) in names.iter().enumerate() {
                     let key = format!("{key}[{place}]");
-                    let known = faults.iter().position(|name| name.as_ref() == own);
+                    let known = faults.iter().position(|(name, _)| name.as_ref() == own);
                     let Some(fault) = known else {
-                        let all = faults.iter().map(AsRef::as_ref);
-                        let remedy = did_you_mean(own, all, "name one of them");
-                        let limit = format!("the campaign's faults are {}", faults.join(", "));
+                        let all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
+                        let limit = format!("the campaign's faults are {}", all.join(", "));
+                        let remedy = did_you_mean(own, all.into_iter(), "name one of them");
                         return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
                     };
+                    if faults[fault].1 {
+                        return Err(self.invalid(
+                            key,
+                            format!("{own:?}"),
+                            "this fault is part of the background of all strata",
+                            "remove it from the list, or its background = true",
+                        ));
+                    }
                     if certain.contains(&fault) {
                         return Err(self.invalid(
                             key,

@@ -253,6 +253,7 @@ impl Check<'_> {
             link,
             kind,
             probability,
+            background: file.background.unwrap_or(false),
             channels,
             onset_s,
             duration_s,

@@ -17,6 +17,7 @@ magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { duratio
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { onset_s = { uniform = [1.0, 2.0], per = "channel" } }, {}] :: fault[0].agents[1].onset_s.per ~ a quantity of the agent
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, { kind = "bias" }, {}] :: agents ~ unknown key `kind`
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, {}] :: fault[0].agents ~ 2 blocks ~ one block for each of the 3 agents
+probability = 0.25 => background = true && [verdict] => [[strata]]\nfaults = ["actuator loss-of-effectiveness"]\n[verdict] :: strata[0].faults[0] ~ "actuator loss-of-effectiveness": this fault is part of the background of all strata; remove it from the list
 kind = "sine"     => kind = "sine"\nagents = [{}, { probability = 0.5 }, {}] :: agents ~ unknown key `probability`
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fault[0].link (line 58) = given ~ only the network has two ways ~ target = "network"
 [verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nramp_s = 1.0\n[verdict] :: fault[2].ramp_s (line 71) = 1.0 ~ "stuck" is there or not; remove it
