@@ -10,6 +10,7 @@ use crate::gains::GainSet;
 use crate::model::Shown;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::model::rng::{Address, Stream};
+use crate::synthesis::LoopGains;
 use crate::tables::{Scores, Status, status};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,14 @@ pub const RMSE_LIMIT: f64 = 1e-4;
 /// costs up to 2e-6 m of the smallest errors (1 cm over short times), which is more than 1e-4 of them. Together the limits let
 /// 5e-6 m pass, a fortieth of [`ERROR_LIMIT`].
 pub const RMSE_FLOOR: f64 = 0.05;
+/// By how much the feedback gains are raised in a flight that shows how sensitive another is, relative: what single precision loses
+/// over some hundred operations, in every step.
+const NUDGE: f64 = 1e-6;
+/// A flight is sensitive if such a nudge, in double precision, moves it by more than this share of the limits. Others move by some
+/// hundredths of them, as errors change with the gains. A loop that a limit of rate, a delay or lost messages keep in a bounded
+/// oscillation without a period is sensitive: there every difference grows, and no two number formats agree for long, however right
+/// both are.
+const SENSITIVE_SHARE: f64 = 0.1;
 /// Instants at which the errors are compared, besides their maxima over all steps.
 const SAMPLES: u32 = 256;
 /// Episodes whose trajectories are in memory at once.
@@ -38,6 +47,10 @@ pub struct CrossCheck {
     pub episodes: Vec<u32>,
     /// Pairs of episode and controller whose errors were compared: neither backend fails or saturates in them.
     pub compared: usize,
+    /// Pairs that differ by more than the limits and are left out, since the reference itself differs as much from one whose
+    /// gains are a millionth larger.
+    #[serde(default)]
+    pub sensitive: usize,
     /// Largest difference of |e|, m or rad.
     pub largest_error_difference: f64,
     /// Largest difference of a channel's RMS error, relative to it or to [`RMSE_FLOOR`].
@@ -54,6 +67,9 @@ pub struct CrossCheck {
 }
 
 impl CrossCheck {
+    /// Why flights are left out as sensitive.
+    pub const SENSITIVE: &str = "so sensitive that gains a millionth larger move them too";
+
     /// Whether the backends agree within the limits.
     #[must_use]
     pub fn holds(&self) -> bool {
@@ -82,6 +98,7 @@ pub fn cross_check(
     let every = campaign.time.steps.div_ceil(SAMPLES);
     let loops = gains.loops();
     let reference = Cpu::new(campaign, &loops, Precision::F64, None);
+    let nudged = Cpu::new(campaign, &nudged(&loops), Precision::F64, None);
     let mut engine = match (&leg.engine, gpu) {
         (Engine::Gpu { .. }, Some(gpu)) => {
             let tuning = Tuning {
@@ -100,6 +117,7 @@ pub fn cross_check(
     let mut check = CrossCheck {
         episodes: episodes.clone(),
         compared: 0,
+        sensitive: 0,
         largest_error_difference: 0.0,
         largest_rmse_difference: 0.0,
         verdicts_differ: 0,
@@ -120,8 +138,12 @@ pub fn cross_check(
             let pairs = found.iter().enumerate();
             check.not_repeated += pairs.filter(|&pair| !repeated(pair)).count();
         }
-        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-            check.take(campaign, found, expected);
+        for (&episode, (found, expected)) in episodes.iter().zip(found.iter().zip(&expected)) {
+            for (controller, (found, expected)) in found.iter().zip(expected).enumerate() {
+                check.take(campaign, found, expected, || {
+                    trace(&nudged, episode, controller, every)
+                });
+            }
         }
     }
     Ok(check)
@@ -156,6 +178,7 @@ enum Tracer<'g> {
 }
 
 /// One episode under one controller: how its agents ended, and e at some instants, `[instant][agent][channel]`.
+#[derive(Clone)]
 struct Traced {
     outcomes: Vec<AgentOutcome>,
     errors: Vec<Vec<Vec<f64>>>,
@@ -168,18 +191,29 @@ fn errors(agents: &[Vec<Shown>]) -> Vec<Vec<f64>> {
 
 /// `[episode][controller]`.
 fn trace_on_cpu(cpu: &Cpu, episodes: &[u32], controllers: usize, every: u32) -> Vec<Vec<Traced>> {
-    let trace = |&episode: &u32| {
-        let under = |controller| {
-            let (outcomes, snapshots) = cpu.trace(episode, controller, every);
-            let shown = |snapshot: &Snapshot| errors(&snapshot.agents);
-            Traced {
-                outcomes,
-                errors: snapshots.iter().map(shown).collect(),
-            }
-        };
+    let of_episode = |&episode: &u32| {
+        let under = |controller| trace(cpu, episode, controller, every);
         (0..controllers).map(under).collect()
     };
-    episodes.par_iter().map(trace).collect()
+    episodes.par_iter().map(of_episode).collect()
+}
+
+fn trace(cpu: &Cpu, episode: u32, controller: usize, every: u32) -> Traced {
+    let (outcomes, snapshots) = cpu.trace(episode, controller, every);
+    let shown = |snapshot: &Snapshot| errors(&snapshot.agents);
+    Traced {
+        outcomes,
+        errors: snapshots.iter().map(shown).collect(),
+    }
+}
+
+/// Feedback gains that are [`NUDGE`] larger.
+fn nudged(loops: &[Vec<LoopGains>]) -> Vec<Vec<LoopGains>> {
+    let mut nudged = loops.to_vec();
+    for own in nudged.iter_mut().flatten() {
+        own.k = own.k.map(|k| k * (1.0 + NUDGE));
+    }
+    nudged
 }
 
 /// `[episode][controller]`.
@@ -234,7 +268,14 @@ fn choose(seed: u64, leg: &Leg, count: u32) -> Vec<u32> {
 }
 
 impl CrossCheck {
-    fn take(&mut self, campaign: &Campaign, found: &Traced, expected: &Traced) {
+    /// Takes in a flight, of which `nudged` is the reference with slightly larger gains.
+    fn take(
+        &mut self,
+        campaign: &Campaign,
+        found: &Traced,
+        expected: &Traced,
+        nudged: impl FnOnce() -> Traced,
+    ) {
         let worst = |traced: &Traced| {
             let each = traced.outcomes.iter().map(|agent| status(campaign, agent));
             each.max().unwrap_or(Status::Ok)
@@ -242,46 +283,76 @@ impl CrossCheck {
         let (own, reference) = (worst(found), worst(expected));
         if own != reference {
             self.verdicts_differ += 1;
-            let agents = found.outcomes.iter().zip(&expected.outcomes);
-            let mut near = agents.flat_map(|(found, expected)| {
-                [
-                    near_threshold(&campaign.verdict, found),
-                    near_threshold(&campaign.verdict, expected),
-                ]
-            });
-            // A loop that grows leaves the numbers earlier in single precision: both fail, one is said to diverge.
-            let one_fails = (own == Status::Ok) != (reference == Status::Ok);
-            if one_fails && !near.any(|near| near) {
-                self.verdicts_differ_clearly += 1;
-            }
         }
+        let agents = found.outcomes.iter().zip(&expected.outcomes);
+        let mut near = agents.flat_map(|(found, expected)| {
+            [
+                near_threshold(&campaign.verdict, found),
+                near_threshold(&campaign.verdict, expected),
+            ]
+        });
+        // A loop that grows leaves the numbers earlier in single precision: both fail, one is said to diverge.
+        let one_fails = (own == Status::Ok) != (reference == Status::Ok);
+        let clearly = one_fails && !near.any(|near| near);
         // Demands beyond limits that cut nothing are counted too, but change no trajectory.
         let saturated = |traced: &Traced| {
             let mut channels = traced.outcomes.iter().flat_map(|agent| &agent.channels);
             campaign.is_limited() && channels.any(|channel| channel.saturated_fraction > 0.0)
         };
         let calm = own == Status::Ok && reference == Status::Ok;
-        if !calm || saturated(found) || saturated(expected) {
+        let compared = calm && !saturated(found) && !saturated(expected);
+        let difference = Difference::between(found, expected);
+        // What leaves the numbers grows without bound, which a nudge does not excuse.
+        let bounded = own != Status::Diverged && reference != Status::Diverged;
+        if bounded
+            && (clearly || compared && difference.exceeds(1.0))
+            && Difference::between(&nudged(), expected).exceeds(SENSITIVE_SHARE)
+        {
+            self.sensitive += 1;
             return;
         }
-        self.compared += 1;
-        let sampled = found.errors.iter().flatten().flatten();
-        for (own, reference) in sampled.zip(expected.errors.iter().flatten().flatten()) {
-            self.take_error(own - reference);
+        self.verdicts_differ_clearly += usize::from(clearly);
+        if compared {
+            self.compared += 1;
+            self.largest_error_difference = self.largest_error_difference.max(difference.error);
+            self.largest_rmse_difference = self.largest_rmse_difference.max(difference.rmse);
         }
+    }
+}
+
+/// How far two flights of an episode are from each other.
+#[derive(Debug)]
+struct Difference {
+    /// Largest difference of e at an instant, or of max |e|, m or rad.
+    error: f64,
+    /// Largest difference of an RMS error, relative to it or to [`RMSE_FLOOR`].
+    rmse: f64,
+}
+
+impl Difference {
+    fn between(found: &Traced, expected: &Traced) -> Self {
+        let instants = found.errors.iter().flatten().flatten();
+        let instants = instants.zip(expected.errors.iter().flatten().flatten());
+        let at_instants = instants.map(|(own, reference)| size(own - reference));
         let channels = |traced: &Traced| {
             let channels = traced.outcomes.iter().flat_map(|agent| &agent.channels);
             channels.copied().collect::<Vec<_>>()
         };
-        for (own, reference) in channels(found).iter().zip(&channels(expected)) {
-            self.take_error(own.max_abs - reference.max_abs);
-            let relative = size((own.rmse - reference.rmse) / reference.rmse.max(RMSE_FLOOR));
-            self.largest_rmse_difference = self.largest_rmse_difference.max(relative);
+        let (own, reference) = (channels(found), channels(expected));
+        let pairs = || own.iter().zip(&reference);
+        let of_maxima = pairs().map(|(own, reference)| size(own.max_abs - reference.max_abs));
+        let of_rmse = pairs().map(|(own, reference)| {
+            size((own.rmse - reference.rmse) / reference.rmse.max(RMSE_FLOOR))
+        });
+        Self {
+            error: at_instants.chain(of_maxima).fold(0.0, f64::max),
+            rmse: of_rmse.fold(0.0, f64::max),
         }
     }
 
-    fn take_error(&mut self, difference: f64) {
-        self.largest_error_difference = self.largest_error_difference.max(size(difference));
+    /// Whether they are further from each other than a share of the limits.
+    fn exceeds(&self, share: f64) -> bool {
+        self.error > share * ERROR_LIMIT || self.rmse > share * RMSE_LIMIT
     }
 }
 
@@ -303,4 +374,90 @@ fn near_threshold(verdict: &Verdict, agent: &AgentOutcome) -> bool {
             || max_rmse.is_finite()
                 && (metrics.rmse - max_rmse).abs() <= RMSE_LIMIT * max_rmse.max(RMSE_FLOOR)
     })
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn smoke() -> (Campaign, Vec<Vec<LoopGains>>) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/smoke.toml");
+        let campaign = Campaign::load(&path).unwrap();
+        let loops = GainSet::obtain(&campaign).unwrap().loops();
+        (campaign, loops)
+    }
+
+    #[test]
+    fn ordinary_flights_hardly_feel_a_nudge() {
+        let (campaign, loops) = smoke();
+        let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
+        let nudged = Cpu::new(&campaign, &nudged(&loops), Precision::F64, None);
+        for episode in 0..6 {
+            for controller in 0..loops.len() {
+                let [own, moved] =
+                    [&reference, &nudged].map(|cpu| trace(cpu, episode, controller, 10));
+                let difference = Difference::between(&moved, &own);
+                // A PID's error goes with its gains, so that the RMS error changes by about 1e-6 of itself: far from a tenth of
+                // the limit of 1e-4.
+                assert!(!difference.exceeds(0.5 * SENSITIVE_SHARE), "{difference:?}");
+                assert!(difference.error > 0.0 && difference.rmse > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_difference_is_excused_where_the_reference_is_as_sensitive_and_nowhere_else() {
+        let (campaign, loops) = smoke();
+        let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
+        let expected = trace(&reference, 0, 0, 10);
+        let blank = CrossCheck {
+            episodes: vec![0],
+            compared: 0,
+            sensitive: 0,
+            largest_error_difference: 0.0,
+            largest_rmse_difference: 0.0,
+            verdicts_differ: 0,
+            verdicts_differ_clearly: 0,
+            not_repeated: 0,
+            attenuation: Vec::new(),
+        };
+        let off_by = |difference: f64| {
+            let mut flight = expected.clone();
+            flight.errors[40][1][2] += difference;
+            flight
+        };
+        let taken = |found: &Traced, nudged: &dyn Fn() -> Traced| {
+            let mut check = blank.clone();
+            check.take(&campaign, found, &expected, nudged);
+            check
+        };
+        // Within the limits nobody is asked.
+        let near = taken(&off_by(0.9 * ERROR_LIMIT), &|| unreachable!());
+        assert!(near.holds() && near.compared == 1 && near.sensitive == 0);
+        let far = off_by(1.1 * ERROR_LIMIT);
+        let wrong = taken(&far, &|| off_by(0.09 * ERROR_LIMIT));
+        assert!(!wrong.holds() && wrong.compared == 1 && wrong.sensitive == 0);
+        let sensitive = taken(&far, &|| off_by(0.11 * ERROR_LIMIT));
+        assert!(sensitive.holds() && sensitive.compared == 0 && sensitive.sensitive == 1);
+        // The same of verdicts that differ; but not of a flight that leaves the numbers.
+        let mut failed = expected.clone();
+        failed.outcomes[1].channels[2].max_abs = 9.0;
+        failed.outcomes[1].failed_step = Some(2000);
+        let moved = || off_by(0.11 * ERROR_LIMIT);
+        let still = taken(&failed, &|| expected.clone());
+        assert_eq!((still.verdicts_differ_clearly, still.sensitive), (1, 0));
+        let told = taken(&failed, &moved);
+        assert_eq!(
+            (
+                told.verdicts_differ,
+                told.verdicts_differ_clearly,
+                told.sensitive
+            ),
+            (1, 0, 1)
+        );
+        failed.outcomes[1].diverged = true;
+        assert_eq!(taken(&failed, &moved).verdicts_differ_clearly, 1);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::document::{Block, Cell, Grid, Section};
 use super::evidence::Evidence;
+use crate::cross_check::CrossCheck;
 use crate::flight::Leg;
 
 /// Version, seed, machine, times, cross-check, and the campaign's text.
@@ -43,12 +44,16 @@ pub(crate) fn section(evidence: &Evidence) -> Section {
         add(
             "cross-check with f64 on the CPU",
             format!(
-                "{} episodes: |e| within {:.1e}, RMS error within {:.1e} relative ({} flights compared), {} verdicts differ",
+                "{} episodes: |e| within {:.1e}, RMS error within {:.1e} relative ({} flights compared), {} verdicts differ{}",
                 check.episodes.len(),
                 check.largest_error_difference,
                 check.largest_rmse_difference,
                 check.compared,
-                check.verdicts_differ
+                check.verdicts_differ,
+                match check.sensitive {
+                    0 => String::new(),
+                    count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
+                }
             ),
         );
     }

@@ -236,8 +236,12 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
             check.largest_error_difference, check.largest_rmse_difference, check.compared,
         )
     };
+    let sensitive = match check.sensitive {
+        0 => String::new(),
+        count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
+    };
     format!(
-        "cross-check of {} episodes with f64 on the CPU: {differences}, {} of {pairs} verdicts differ",
+        "cross-check of {} episodes with f64 on the CPU: {differences}, {} of {pairs} verdicts differ{sensitive}",
         check.episodes.len(),
         check.verdicts_differ,
     )

@@ -7,7 +7,7 @@ use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{Gpu, GpuError, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::cross_check::cross_check;
-use urts_mc::flight::{Backend, Engine, Flight, FlightError, Settings, fly};
+use urts_mc::flight::{Backend, Engine, Flight, FlightError, Leg, Settings, fly};
 use urts_mc::gains::GainSet;
 use urts_mc::manifest::Manifest;
 use urts_mc::output::OutputDir;
@@ -198,6 +198,25 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let unsound = check(&flight);
     assert!(!unsound.holds());
     assert_eq!(unsound.not_repeated, 1);
+}
+
+#[test]
+fn a_flight_whose_every_difference_grows_is_left_out_of_the_cross_check() {
+    // Under pid-tuned, loops of the episodes 118 and 119 oscillate and never repeat. In the first it is a limit of rate and lost
+    // messages that keep one there: 1e-6 rad between two number formats are 0.2 rad two seconds later. The verdicts are the same.
+    let campaign = altered("uav-faults", &[("episodes = 1000", "episodes = 120")]);
+    let gains = GainSet::obtain(&campaign).unwrap();
+    let settings = Settings::cpu(Precision::F32);
+    let flight = fly(&campaign, &gains, &settings, None, &|_| ()).unwrap();
+    let leg = Leg {
+        first: 112,
+        episodes: 8,
+        ..flight.legs[0].clone()
+    };
+    let scores = &flight.tables.scores;
+    let check = cross_check(&campaign, &gains, &settings, &leg, scores, None, 8).unwrap();
+    assert!(check.holds() && check.sensitive == 2, "{check:?}");
+    assert!(check.compared > 12, "{check:?}");
 }
 
 #[test]

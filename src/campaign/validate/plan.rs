@@ -187,7 +187,7 @@ impl Check<'_> {
                     let Some(fault) = known else {
                         let all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
                         let limit = format!("the campaign's faults are {}", all.join(", "));
-                        let remedy = did_you_mean(own, all.into_iter(), "name one of them");
+                        let remedy = did_you_mean(own, all, "name one of them");
                         return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
                     };
                     if faults[fault].1 {
