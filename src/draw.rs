@@ -61,6 +61,13 @@ impl FaultDraw {
         self.strikes.contains(&true)
     }
 
+    /// The channel that it strikes, if it is a single one.
+    #[must_use]
+    pub fn only_channel(&self) -> Option<usize> {
+        let mut struck = (0..self.strikes.len()).filter(|&channel| self.strikes[channel]);
+        struck.next().filter(|_| struck.next().is_none())
+    }
+
     /// The first step after it, if it ends.
     #[must_use]
     pub fn end_step(&self, time: Time) -> u32 {

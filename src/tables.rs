@@ -442,22 +442,18 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
         row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
         if fault.strikes_one() {
-            let of_channels = campaign.channels().iter().zip(&drawn.strikes);
-            let struck: Vec<_> = of_channels.filter(|(_, strikes)| **strikes).collect();
-            // More than one: of an agent with channels of its own.
-            let struck = match struck.as_slice() {
-                [(channel, _)] => Arc::clone(channel),
-                _ => "".into(),
-            };
-            row.name(|| format!("fault{index}_channel"), struck);
+            let names = campaign.channels();
+            let struck = drawn.only_channel().map(|channel| names[channel].clone());
+            row.name(
+                || format!("fault{index}_channel"),
+                struck.unwrap_or_default(),
+            );
         }
         let (time, occurs) = (campaign.time, drawn.occurs());
         let mut of_time = |name: &str, steps: f64| {
             let length_s = occurs.then_some(steps * time.step_s);
-            row.real(
-                || format!("fault{index}_{name}"),
-                length_s.unwrap_or(f64::NAN),
-            );
+            let length_s = length_s.unwrap_or(f64::NAN);
+            row.real(|| format!("fault{index}_{name}"), length_s);
         };
         of_time("onset_s", f64::from(time.onset_step(drawn.onset_s)));
         if fault.duration_s.is_some() {
