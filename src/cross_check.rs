@@ -14,6 +14,7 @@ use crate::synthesis::LoopGains;
 use crate::tables::{Scores, Status, status};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
 /// Largest difference of |e| between backends, m or rad (model.md, section 7): what single precision costs is 20 times less.
@@ -40,7 +41,7 @@ const CHUNK: usize = 64;
 const WHOLE: usize = 4;
 
 /// How a run's episodes differ from the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CrossCheck {
     /// Episodes that were flown again under every controller.
@@ -98,7 +99,8 @@ pub fn cross_check(
     let every = campaign.time.steps.div_ceil(SAMPLES);
     let loops = gains.loops();
     let reference = Cpu::new(campaign, &loops, Precision::F64, None);
-    let nudged = Cpu::new(campaign, &nudged(&loops), Precision::F64, None);
+    // Few runs need it.
+    let nudged = LazyCell::new(|| Cpu::new(campaign, &nudged(&loops), Precision::F64, None));
     let mut engine = match (&leg.engine, gpu) {
         (Engine::Gpu { .. }, Some(gpu)) => {
             let tuning = Tuning {
@@ -116,14 +118,8 @@ pub fn cross_check(
     };
     let mut check = CrossCheck {
         episodes: episodes.clone(),
-        compared: 0,
-        sensitive: 0,
-        largest_error_difference: 0.0,
-        largest_rmse_difference: 0.0,
-        verdicts_differ: 0,
-        verdicts_differ_clearly: 0,
-        not_repeated: 0,
         attenuation: attenuation(campaign, gains, &reference, &episodes),
+        ..CrossCheck::default()
     };
     for episodes in episodes.chunks(CHUNK) {
         let found = match &mut engine {
@@ -412,24 +408,13 @@ mod tests {
         let (campaign, loops) = smoke();
         let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
         let expected = trace(&reference, 0, 0, 10);
-        let blank = CrossCheck {
-            episodes: vec![0],
-            compared: 0,
-            sensitive: 0,
-            largest_error_difference: 0.0,
-            largest_rmse_difference: 0.0,
-            verdicts_differ: 0,
-            verdicts_differ_clearly: 0,
-            not_repeated: 0,
-            attenuation: Vec::new(),
-        };
         let off_by = |difference: f64| {
             let mut flight = expected.clone();
             flight.errors[40][1][2] += difference;
             flight
         };
         let taken = |found: &Traced, nudged: &dyn Fn() -> Traced| {
-            let mut check = blank.clone();
+            let mut check = CrossCheck::default();
             check.take(&campaign, found, &expected, nudged);
             check
         };
