@@ -202,16 +202,13 @@ impl Check<'_> {
             own: &|agent| blocks?[agent].ramp_s.as_ref(),
         };
         let ramp_s = self.perhaps(&table, ramp, RAMP, team)?;
-        if ramp_s.is_some() && !kind.can_ramp() {
-            let all = (0..team).map(|agent| ramp.of(&table, RAMP.name, agent));
-            let given = all.filter_map(|(key, value)| Some((key, value?))).next();
-            let (ramp_key, value) = given
-                .map_or((key(RAMP.name), String::new()), |(key, value)| {
-                    (key, value.to_string())
-                });
+        let mut ramps = (0..team).map(|agent| ramp.of(&table, RAMP.name, agent));
+        if let Some((key, ramp_s)) = ramps.find_map(|(key, value)| Some((key, value?)))
+            && !kind.can_ramp()
+        {
             return Err(self.invalid(
-                ramp_key,
-                value,
+                key,
+                ramp_s,
                 &format!("{:?} is there or not", kind.name()),
                 "remove it",
             ));

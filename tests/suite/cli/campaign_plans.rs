@@ -32,6 +32,8 @@ magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fau
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = 3\n[verdict] :: intensity = 3 ~ integer `3`, expected one of `light`, `moderate`, `severe`
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 1.0\nairspeed_m_s = 5.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].altitude_m (line 71) = 1.0 ~ within [3, 305]
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 10.0\nairspeed_m_s = 0.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].airspeed_m_s (line 72) = 0.0 ~ at least
+[verdict] => [[disturbance]]\nkind = "gust-1-cosine"\nspeed_m_s = 5.0\ngain_n_s_m = 1.0\nonset_s = 1.0\nduration_s = 1.0\nagents = [{}, {}, { onset_s = 7.0 }]\n[verdict] :: disturbance[1].agents[2].onset_s (line 74) = 7.0 ~ before the end
+[verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nagents = [{}, { ramp_s = 1.0 }, {}]\n[verdict] :: fault[2].agents[1].ramp_s (line 71) = 1.0: "stuck" is there or not; remove it
 [verdict] => [[disturbance]]\nkind = "gust-1-cosine"\nspeed_m_s = 5.0\ngain_n_s_m = 1.0\nonset_s = 7.0\nduration_s = 1.0\n[verdict] :: disturbance[1].onset_s (line 72) = 7.0 ~ before the end
 [verdict] => [control]\nrate_hz = 300.0\n[verdict] :: control.rate_hz (line 69) = 300.0 ~ whole steps ~ use 250
 [verdict] => [control]\ndelay_s = 4.0\n[verdict] :: control.delay_s (line 69) = up to 4 s ~ remembered

@@ -3,7 +3,7 @@
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
 use super::{fly, jets, linked, replaced};
-use crate::common::gpu_or_skip;
+use crate::common::{altered, gpu_or_skip};
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
 use urts_mc::gains::GainSet;
@@ -44,6 +44,23 @@ fn val_all_faults_of_a_uav_agree() {
         };
         assert!(double.compared > 20 && single.compared > 40);
     }
+}
+
+#[test]
+fn val_faults_that_differ_from_agent_to_agent_agree() {
+    let magnitude = "magnitude = { uniform = [0.1, 0.5] }";
+    let blocks = r#"duration_s = 2.0
+agents = [
+    { probability = 1.0, channels = [2, 3], onset_s = 1.0, duration_s = 0.5, magnitude = 0.25 },
+    { probability = 0.0 },
+    { probability = 1.0, channels = "all", ramp_s = 0.3 },
+]"#;
+    let campaign = altered("smoke", &[(magnitude, &format!("{magnitude}\n{blocks}"))]);
+    assert!(campaign.faults[0].spares_some());
+    let Some([double, single]) = agreement(&campaign) else {
+        return;
+    };
+    assert!(double.compared > 40 && single.compared > 40);
 }
 
 #[test]
