@@ -1,4 +1,4 @@
-// Twin of src/model/math.rs: elementary functions, since those of WGSL may be off by 2^-11. The coefficients come from
+// Twin of src/model/lanes/math.rs: elementary functions, since those of WGSL may be off by 2^-11. The coefficients come from
 // there; tanh, atan2 and clamp take the place of the built-in functions of these names.
 
 fn polynomial_4(x: f32, c: array<f32, 4>) -> f32 {

@@ -1,4 +1,4 @@
-// Twin of src/model/noise.rs: what is random in every step. Samples and states are kept in the state, where each is needed
+// Twin of src/model/exogenous/noise.rs: what is random in every step. Samples and states are kept in the state, where each is needed
 // once.
 
 // Two independent normal numbers from two random words (Box and Muller's transform).

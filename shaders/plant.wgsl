@@ -1,4 +1,4 @@
-// Twin of src/model/plant.rs: what every plant is asked and answers. A plant's own file says of what constants it is made
+// Twin of src/model/plant/mod.rs: what every plant is asked and answers. A plant's own file says of what constants it is made
 // (`Plant`), what a channel takes of them (`ChannelPlant`, `channel_plant`), what its reference is (`reference`), what it shows
 // to the channels that it acts on (`publish_channel`), and how it answers (`respond`).
 

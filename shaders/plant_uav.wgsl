@@ -1,4 +1,4 @@
-// Twin of src/model/plant_uav.rs: the UAV of (3) with the feedforward law (9). One invocation answers for one channel; what
+// Twin of src/model/plant/uav.rs: the UAV of (3) with the feedforward law (9). One invocation answers for one channel; what
 // it needs of its agent's other channels they have published (`seen`).
 
 // Constants of the plant; those that a plant does not use are zero.

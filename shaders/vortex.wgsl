@@ -1,4 +1,4 @@
-// Twin of src/model/vortex.rs: the jets that rotors blow downwards, in which a UAV is pushed down that flies below another.
+// Twin of src/model/exogenous/vortex.rs: the jets that rotors blow downwards, in which a UAV is pushed down that flies below another.
 
 // What an agent feels of the others' jets.
 struct Vortex {

@@ -1,13 +1,30 @@
 //! Monte Carlo robustness evaluation of fault-tolerant controllers for teams of UAVs or bipeds.
 //!
-//! A campaign file says which closed loop flies, what disturbs it and what counts as failure; a run flies every episode under
-//! every controller on the same draws and compares the controllers pair by pair. The modules are in the order of the flow,
-//! and values move forward only:
+//! A campaign file says which closed loop is simulated, what disturbs it and what counts as failure; a run simulates every
+//! episode under every controller on the same draws and compares the controllers pair by pair.
 //!
-//! ```text
-//! campaign (cautions) -> synthesis, gains -> reference -> draw (sampling) -> backend (model | shaders) -> tables (stop)
-//!          -> comparison, ranking (statistics) -> output, junit (shortcomings) -> report (caveats); paper
-//! ```
+//! # The rooms, from the ground up
+//! A module uses those above it in this list only, never one below; a test holds that (`tests/suite/house.rs`).
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`util`] | a list of fixed length, spelling suggestions, number formats: no knowledge of the domain |
+//! | [`random`] | Philox, Sobol, Latin hypercubes, permutations: numbers by address, no state |
+//! | [`statistics`] | intervals, tests and effect sizes on plain slices |
+//! | [`agent`] | what flies or walks: parameters of UAVs and robots, channels, actuation; reading robots' files |
+//! | [`reference`](mod@reference) | the trajectory to follow as a function of time: path of a UAV, walk of a biped |
+//! | [`synthesis`] | H-infinity gains of a linear channel: Riccati equations, Clarabel, certificates |
+//! | [`campaign`] | the campaign file, read and validated into a [`campaign::Campaign`] |
+//! | [`controllers`] | from a campaign to the gains of every controller: synthesized, or read from a file |
+//! | [`draw`] | the random quantities of one episode |
+//! | [`model`] | the equations of one episode, generic over the lane type; `shaders/` are their twins |
+//! | [`backend`] | the model on many episodes: SIMD lanes on all cores, or a GPU |
+//! | [`results`] | tables by episode, and every statistic on them |
+//! | [`simulation`] | draw, backend and results batch by batch; stopping rule, cross-check, attenuation |
+//! | [`run`](mod@run) | the directory of a run: manifest, files that appear whole, replay of one episode |
+//! | [`report`] | results for people: HTML, Markdown, terminal, JUnit, the paper's figures |
+//!
+//! The program's own room, `cli` (arguments, exit codes, progress), stands on top of all.
 //!
 //! # Invariants
 //! - A [`campaign::Campaign`] is complete and consistent; nothing after it checks input again.
@@ -17,34 +34,32 @@
 //! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when complete.
 //! - The library does not print, does not exit and does not panic on input.
 
-pub mod attenuation;
-pub mod backend;
-pub mod campaign;
-pub mod cautions;
-pub mod caveats;
-pub mod comparison;
-pub mod conditions;
-pub mod cross_check;
-pub mod draw;
-pub mod flight;
-pub mod gains;
-pub mod junit;
-pub mod list;
-pub mod manifest;
-pub mod model;
-mod nearest;
-pub mod output;
-pub mod paper;
-pub mod ranking;
-pub mod reference;
-pub mod replay;
-pub mod report;
-pub mod robot;
-pub mod run;
-pub mod sampling;
-pub mod shortcomings;
+pub mod util;
+
+pub mod random;
+
 pub mod statistics;
-pub mod stop;
+
+pub mod agent;
+
+pub mod reference;
+
 pub mod synthesis;
-pub mod tables;
-pub mod words;
+
+pub mod campaign;
+
+pub mod controllers;
+
+pub mod draw;
+
+pub mod model;
+
+pub mod backend;
+
+pub mod results;
+
+pub mod simulation;
+
+pub mod run;
+
+pub mod report;

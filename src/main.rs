@@ -1,8 +1,6 @@
 //! The `urts-mc` program: a thin shell around the library.
 
 mod cli;
-mod failure;
-mod show;
 
 use clap::Parser;
 use std::process::ExitCode;

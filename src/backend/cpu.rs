@@ -117,9 +117,9 @@ impl Cpu {
             Loop::F32(flyer, simd) => match simd {
                 Simd::Scalar => flyer.fly::<f32>(episodes, done),
                 #[cfg(target_arch = "x86_64")]
-                Simd::Avx2 => flyer.fly::<crate::model::simd::F32x8>(episodes, done),
+                Simd::Avx2 => flyer.fly::<crate::model::lanes::simd::F32x8>(episodes, done),
                 #[cfg(target_arch = "x86_64")]
-                Simd::Avx512 => flyer.fly::<crate::model::simd::F32x16>(episodes, done),
+                Simd::Avx512 => flyer.fly::<crate::model::lanes::simd::F32x16>(episodes, done),
                 #[cfg(not(target_arch = "x86_64"))]
                 _ => flyer.fly::<f32>(episodes, done),
             },
@@ -139,10 +139,12 @@ impl Cpu {
             Loop::F32(flyer, simd) => match simd {
                 Simd::Scalar => flyer.trace::<f32>(episode, controller, every),
                 #[cfg(target_arch = "x86_64")]
-                Simd::Avx2 => flyer.trace::<crate::model::simd::F32x8>(episode, controller, every),
+                Simd::Avx2 => {
+                    flyer.trace::<crate::model::lanes::simd::F32x8>(episode, controller, every)
+                }
                 #[cfg(target_arch = "x86_64")]
                 Simd::Avx512 => {
-                    flyer.trace::<crate::model::simd::F32x16>(episode, controller, every)
+                    flyer.trace::<crate::model::lanes::simd::F32x16>(episode, controller, every)
                 }
                 #[cfg(not(target_arch = "x86_64"))]
                 _ => flyer.trace::<f32>(episode, controller, every),

@@ -1,6 +1,6 @@
 //! What can be wrong with a campaign file.
 
-use crate::nearest::nearest;
+use crate::util::suggest::nearest;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
@@ -26,7 +26,7 @@ pub enum CampaignError {
     },
     /// The robot's file holds no robot.
     #[error(transparent)]
-    Robot(#[from] Box<crate::robot::RobotError>),
+    Robot(#[from] Box<crate::agent::robot::RobotError>),
     /// A value out of its limits, or a contradiction.
     #[error("{}: {key} = {value}: {limit}; {remedy}", path.display())]
     Invalid {

@@ -1,8 +1,8 @@
 //! The parameters of every kind of disturbance and fault, by name: one list serves validation, draws and tables.
 
-use super::agent::{FIRST_ATTITUDE, HEIGHT};
 use super::check::{Bounds, Parameter, of_agent, required};
 use super::file::{DisturbanceKind, FaultKind, FaultTarget, Per};
+use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 
 const PHASE: Parameter = Parameter {
     name: "phase_rad",

@@ -1,24 +1,24 @@
 //! A campaign: everything that decides the result of a run, checked, in SI units, with nothing optional left.
 
-mod agent;
 mod check;
 pub mod distribution;
 pub mod error;
 pub mod file;
 mod kinds;
+pub mod lints;
 mod plan;
 mod validate;
 
-pub use agent::{Agent, Biped, ChannelGroup, FIRST_ATTITUDE, HEIGHT, RobotFile, Uav};
 pub use check::Parameter;
 pub use distribution::Distribution;
 pub use error::CampaignError;
 pub use file::{
-    ActuationKind, CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind,
-    Link, ObserverStart, Per,
+    CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind, Link,
+    ObserverStart, Per,
 };
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 
+use crate::agent::{ActuationKind, Agent, ChannelGroup};
 use crate::reference::Reference;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! The plan of a campaign: which episodes meet what, how their numbers are drawn, and when enough is known.
 
-use crate::sampling::Design;
+use crate::random::Design;
 use std::sync::Arc;
 
 /// A part of the episodes, which meets faults of its own.

@@ -1,12 +1,13 @@
 //! The file of `--junit`.
 
 use super::arguments::RunArguments;
-use crate::failure::Failure;
+use super::exit::Failure;
 use std::fs;
 use std::path::Path;
-use urts_mc::junit::{junit, junit_of_error};
-use urts_mc::manifest::Manifest;
-use urts_mc::output::{OutputError, OutputFile, is_of_run};
+use urts_mc::report::junit::{junit, junit_of_error};
+use urts_mc::run::directory::{OutputFile, is_of_run};
+use urts_mc::run::error::OutputError;
+use urts_mc::run::manifest::Manifest;
 
 /// The file of `--junit`.
 pub(super) struct JunitFile(OutputFile);

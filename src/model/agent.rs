@@ -5,16 +5,17 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::condition::Condition;
 use super::controller::{ChannelGains, fault_estimates, feedback};
+use super::exogenous::delay_line::Moment;
+use super::exogenous::vortex::Vortex;
+use super::exogenous::{Signals, kernels};
+use super::inputs::Condition;
 use super::integrator::Stepped;
 use super::lanes::Lane;
-use super::memory::Moment;
 use super::metric::{Limits, Metrics, Sample};
 use super::plant::{Inputs, Plant, ReferenceRow, Response};
-use super::signal::{Signals, kernel};
-use super::vortex::Vortex;
-use crate::campaign::{Campaign, CouplingCoordinates, FIRST_ATTITUDE, HEIGHT};
+use crate::agent::{FIRST_ATTITUDE, HEIGHT};
+use crate::campaign::{Campaign, CouplingCoordinates};
 
 /// Constants of a group: plant, gains and limits of its channels.
 pub(crate) struct Setting<'t, P, R, const NC: usize> {
@@ -160,7 +161,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         }
         // An axis on its own has no vortices, and no channel of this number.
         if NC > HEIGHT && !self.vortices.is_empty() {
-            let pushed = kernel::vortex_force(&self.vortices, own, team.places);
+            let pushed = kernels::vortex_force(&self.vortices, own, team.places);
             force[HEIGHT] = force[HEIGHT] + pushed;
         }
         let inputs = Inputs {
@@ -191,7 +192,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             3 => Moment::End,
             _ => Moment::Middle,
         };
-        kernel::distortion(&self.signals, moment, &self.motion::<P, STAGE>(plant, rows))
+        kernels::distortion(&self.signals, moment, &self.motion::<P, STAGE>(plant, rows))
     }
 
     /// Keeps what the next step needs of the start of this one.
@@ -205,7 +206,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     ) {
         self.held_feedback = self.feedback::<P, 0>(setting, step);
         let motion = self.motion::<P, 0>(&setting.plant, rows);
-        kernel::remember(&mut self.signals, step, &response.wanted, &motion);
+        kernels::remember(&mut self.signals, step, &response.wanted, &motion);
     }
 
     #[inline(always)]

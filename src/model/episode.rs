@@ -6,19 +6,19 @@
 )]
 
 use super::agent::{Agent, Coupling, Setting};
-use super::condition::{Block, Condition, Entries, changes};
 use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES, TRUE_STATES};
-use super::group::{Advance, Ending, Group, Internals, Show, Shown};
+use super::inputs::{Block, Condition, Entries, changes};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
-use super::part::parts;
-pub(crate) use super::part::{Part, PlantKind};
 use super::plant::Plant;
-use super::plant_biped::Leg;
-use super::plant_uav::{Attitude, Axis, Thrust, Translation};
-use crate::campaign::{self, Campaign, IntegralKind, ObserverStart};
+use super::plant::biped::Leg;
+use super::plant::uav::{Attitude, Axis, Thrust, Translation};
+use super::subsystem::parts;
+pub(crate) use super::subsystem::{Part, PlantKind};
+use super::team::{Advance, Ending, Group, Internals, Show, Shown};
+use crate::agent::robot::LEG_JOINTS;
+use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
-use crate::robot::LEG_JOINTS;
 use crate::synthesis::LoopGains;
 
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
@@ -194,7 +194,7 @@ impl<R: Real> Flight<'_, R> {
     fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Part<R>) {
         let (campaign, first) = (&self.model.campaign, part.channels.start);
         match &campaign.agent {
-            campaign::Agent::Uav(uav) => match part.plant {
+            crate::agent::Agent::Uav(uav) => match part.plant {
                 PlantKind::Axis => self.group::<L, _, 1, NS, 0>(Axis::new(uav, first), part),
                 PlantKind::Translation => {
                     self.group::<L, _, 3, NS, 0>(Translation::new(uav), part);
@@ -202,7 +202,7 @@ impl<R: Real> Flight<'_, R> {
                 PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
                 _ => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
             },
-            campaign::Agent::Biped(biped) => {
+            crate::agent::Agent::Biped(biped) => {
                 let (robot, side) = (&biped.robot, first / LEG_JOINTS);
                 if campaign.is_limited() {
                     self.group::<L, _, 6, NS, 0>(Leg::<R, true>::new(robot, side), part);

@@ -5,28 +5,15 @@
 //! their outcomes.
 
 pub(crate) mod agent;
-pub(crate) mod condition;
 pub mod controller;
-pub(crate) mod dryden;
 pub mod episode;
-pub(crate) mod fault;
-pub(crate) mod group;
+pub(crate) mod exogenous;
+pub(crate) mod inputs;
 pub(crate) mod integrator;
 pub mod lanes;
-pub mod leg;
-pub(crate) mod math;
-pub(crate) mod memory;
 pub mod metric;
-pub(crate) mod noise;
-pub(crate) mod part;
 pub mod plant;
-pub(crate) mod plant_biped;
-pub mod plant_uav;
-pub mod rng;
-pub(crate) mod signal;
-#[cfg(target_arch = "x86_64")]
-pub mod simd;
-pub(crate) mod switch;
-pub(crate) mod vortex;
+pub(crate) mod subsystem;
+pub(crate) mod team;
 
-pub use group::{Internals, Shown};
+pub use team::{Internals, Shown};

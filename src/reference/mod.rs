@@ -6,8 +6,8 @@ pub mod walk;
 pub use path::WaypointPath;
 pub use walk::Walk;
 
-use crate::campaign::FIRST_ATTITUDE;
-use crate::robot::{JOINTS, Robot};
+use crate::agent::FIRST_ATTITUDE;
+use crate::agent::robot::{JOINTS, Robot};
 use std::sync::Arc;
 
 /// Channels of a UAV.

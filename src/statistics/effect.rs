@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::{Estimate, Ranked, correlation};
-use crate::model::rng::{Address, Stream};
+use crate::random::philox::{Address, Stream};
 
 /// What the parameters may have an effect on.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Statistics of a campaign: what the verdicts and metrics of its episodes say about the controllers.
 //!
-//! The sample unit is the episode, and the episodes are independent draws ([`sampling`](crate::sampling)
+//! The sample unit is the episode, and the episodes are independent draws ([`sampling`](crate::random)
 //! says what other designs allow); every function here is pure and deterministic, and the only
 //! random numbers, permutations, are addressed by a seed. A diverged episode carries a metric of `+inf`
 //! (it ranks worst), so ranks decide wherever a mean would not survive it. No function returns
@@ -55,6 +55,9 @@ pub use sequential::{
     Proof, sequential_interval, sequential_lower, sequential_proof, sequential_runs_needed,
     sequential_upper,
 };
+
+/// Level of every two-sided interval, and of the one-sided failure bound.
+pub const LEVEL: f64 = 0.95;
 
 /// A confidence interval; both ends belong to it.
 #[derive(Debug, Clone, Copy, PartialEq)]

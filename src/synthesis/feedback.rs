@@ -171,8 +171,8 @@ fn not_converged() -> SynthesisError {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
 mod tests {
-    use super::super::preset::Preset;
     use super::*;
+    use crate::synthesis::preset::Preset;
 
     #[test]
     fn inequality_has_no_solution_below_the_smallest_rho_of_the_riccati_equation() {

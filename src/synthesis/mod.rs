@@ -36,7 +36,7 @@ pub use gains::{
 };
 pub use margins::Margins;
 pub use observer::observer_riccati;
-pub use preset::{ChannelRole, Preset};
+pub use preset::Preset;
 pub use smoothing::{Smoothing, SmoothingRule};
 pub use verify::{Check, LoopAnalysis, Verified, verify};
 

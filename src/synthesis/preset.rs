@@ -2,6 +2,7 @@
 
 use super::design::{ChannelDesign, geometric_q2};
 use super::smoothing::Smoothing;
+use crate::agent::ChannelRole;
 use serde::{Deserialize, Serialize};
 
 /// A named set of channel designs.
@@ -14,39 +15,6 @@ pub enum Preset {
     UavPhysical,
     /// The paper's robot gains on all joints.
     BipedPaper,
-}
-
-/// Which channels of an agent a design belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ChannelRole {
-    /// x, y and z of a UAV, m.
-    Position,
-    /// Roll, pitch and yaw of a UAV, rad.
-    Attitude,
-    /// The twelve joints of a biped, rad.
-    Joints,
-}
-
-impl ChannelRole {
-    /// The name in files and tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Attitude => "attitude",
-            Self::Joints => "joints",
-        }
-    }
-
-    /// The unit of an error.
-    #[must_use]
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Position => "m",
-            Self::Attitude | Self::Joints => "rad",
-        }
-    }
 }
 
 impl Preset {

@@ -25,10 +25,10 @@ use std::time::{Duration, Instant};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning, Wanted, adapters};
 use urts_mc::campaign::Campaign;
-use urts_mc::flight::{Settings, fly};
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::model::episode::Model;
 use urts_mc::reference::Reference;
+use urts_mc::simulation::{Settings, fly};
 
 /// Floating-point operations per UAV-step, counted on the hand-written programs.
 const FLOP: [(&str, f64); 2] = [("ftc", 3640.0), ("pid", 2344.0)];

@@ -6,10 +6,10 @@ use super::loops::{nothing, sized};
 use super::signals::begin;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::setting::{LegPlantWords, UavWords};
+use crate::backend::gpu::uniforms::{LegPlantWords, UavWords};
 use crate::model::episode::PlantKind;
-use crate::model::memory::Actuator;
-use crate::model::signal::Signals;
+use crate::model::exogenous::Signals;
+use crate::model::exogenous::delay_line::Actuator;
 
 /// Who an invocation is, and its words of the buffers.
 pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(

@@ -1,4 +1,4 @@
-//! Probes of shaders/group.wgsl: agents and teams.
+//! Probes of shaders/team.wgsl: agents and teams.
 
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{answer_response, at_stage, nothing, rows, sized};
@@ -6,12 +6,12 @@ use super::numbers::Numbers;
 use super::signals::{begin, next_change};
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
-use crate::backend::gpu::words::NEVER;
+use crate::backend::gpu::layout::NEVER;
 use crate::model::agent::{Agent, Coupling, Team};
 use crate::model::controller::fault_estimates;
-use crate::model::group::finite;
-use crate::model::memory::Actuator;
+use crate::model::exogenous::delay_line::Actuator;
 use crate::model::plant::{ReferenceRow, Response};
+use crate::model::team::finite;
 
 /// The rows of all agents' channels.
 fn team_rows<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(

@@ -3,9 +3,9 @@
 
 use super::tracked::Tracked;
 use crate::backend::gpu::device::Use;
-use crate::backend::gpu::group::binding_layout;
-use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::{Span, word};
+use crate::backend::gpu::layout::{Span, word};
+use crate::backend::gpu::pipeline::binding_layout;
+use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::{Gpu, GpuError, Wanted, adapters};
 use std::sync::{Mutex, OnceLock, PoisonError};
 

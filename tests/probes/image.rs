@@ -3,10 +3,10 @@
 
 use super::harness::Expected;
 use super::tracked::Tracked;
-use crate::backend::gpu::lists::{Lists, waves};
+use crate::backend::gpu::signals::{Lists, waves};
 use crate::model::agent::Agent;
 use crate::model::controller::FTC_STATES;
-use crate::model::memory::Ring;
+use crate::model::exogenous::delay_line::Ring;
 use crate::model::metric::Sums;
 
 /// Words of the image that every shape has, before its waves and rings.

@@ -3,20 +3,23 @@
 
 use super::shapes;
 use super::world::World;
-use crate::backend::gpu::group::{BINDINGS, ENTRIES};
-use crate::backend::gpu::setting::{GainsWords, LegPlantWords, SettingHead, UavWords, setting};
-use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
-use crate::campaign::{Campaign, FIRST_ATTITUDE, HEIGHT};
+use crate::agent::{FIRST_ATTITUDE, HEIGHT};
+use crate::backend::gpu::layout;
+use crate::backend::gpu::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span};
+use crate::backend::gpu::pipeline::{BINDINGS, ENTRIES};
+use crate::backend::gpu::shape::Shape;
+use crate::backend::gpu::uniforms::{GainsWords, LegPlantWords, SettingHead, UavWords, setting};
+use crate::campaign::Campaign;
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
-use crate::model::group::{FAR_AWAY, FLUSH_STEPS};
-use crate::model::leg::LegWords;
-use crate::model::math;
-use crate::model::rng::{self, Stream};
-use crate::model::vortex::{JET_PEAK, JET_SPREAD};
+use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
+use crate::model::lanes::math;
+use crate::model::plant::leg::LegWords;
+use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
+use crate::random::philox;
+use crate::random::philox::Stream;
 use naga::{AddressSpace, Expression, Handle, Literal, Module, StorageAccess, TypeInner};
 use std::mem::offset_of;
 use std::path::Path;
@@ -291,12 +294,12 @@ fn val_constants_are_those_of_rust() {
             ("JET_PEAK", number(JET_PEAK)),
             ("FAR_AWAY", number(FAR_AWAY)),
             ("MAX", number(f64::from(f32::MAX))),
-            ("NEVER", vec![words::NEVER]),
+            ("NEVER", vec![layout::NEVER]),
             ("SHOWN", count(SHOWN_WORDS)),
             ("OUTCOME_WORDS", count(OUTCOME_WORDS)),
-            ("ROUNDS", vec![rng::ROUNDS]),
-            ("MULTIPLIERS", rng::MULTIPLIERS.to_vec()),
-            ("WEYL", rng::WEYL.to_vec()),
+            ("ROUNDS", vec![philox::ROUNDS]),
+            ("MULTIPLIERS", philox::MULTIPLIERS.to_vec()),
+            ("WEYL", philox::WEYL.to_vec()),
             ("STREAM_NOISE", count(Stream::Noise as usize)),
             ("STREAM_BURST", count(Stream::Burst as usize)),
             ("STREAM_TURBULENCE", count(Stream::Turbulence as usize)),

@@ -6,10 +6,10 @@ use super::loops::{rows, sized};
 use super::shapes;
 use super::tracked::Tracked;
 use super::world::World;
-use crate::backend::gpu::shader::Shape;
+use crate::backend::gpu::shape::Shape;
 use crate::model::lanes::Lane;
-use crate::model::leg::{LEG_JOINTS, LegJoint, LegModel, LegWords, forward_dynamics};
-use crate::model::plant_biped::{Leg, matrix_row, plus_product};
+use crate::model::plant::biped::{Leg, matrix_row, plus_product};
+use crate::model::plant::leg::{LEG_JOINTS, LegJoint, LegModel, LegWords, forward_dynamics};
 use std::path::Path;
 
 const PROBE: &str = "

@@ -6,8 +6,8 @@ use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::model::controller::{Measured, fault_estimates, feedback, injected, step_channel};
 use crate::model::integrator::Step;
+use crate::model::plant::uav::Attitude;
 use crate::model::plant::{Inputs, ReferenceRow, Response};
-use crate::model::plant_uav::Attitude;
 
 /// Evaluates an expression with the constant `$name` for the stage, which the model takes as a type parameter.
 macro_rules! at_stage {

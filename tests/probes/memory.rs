@@ -1,4 +1,4 @@
-//! Probes of shaders/switch.wgsl, memory.wgsl and noise.wgsl: when faults are there, what is remembered, and what is random in
+//! Probes of shaders/window.wgsl, delay_line.wgsl and noise.wgsl: when faults are there, what is remembered, and what is random in
 //! every step.
 
 use super::harness::{Compared, Expected, Lab};
@@ -7,11 +7,11 @@ use super::numbers::Numbers;
 use super::signals::{episodes, next_change};
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::lists::{bursts, switches};
+use crate::backend::gpu::signals::{bursts, switches};
 use crate::draw::member;
+use crate::model::exogenous::delay_line::Moment;
+use crate::model::exogenous::noise::normal_pair;
 use crate::model::lanes::{Lane, MAX_WIDTH};
-use crate::model::memory::Moment;
-use crate::model::noise::normal_pair;
 
 /// The moment of a stage.
 pub(super) fn moment(stage: usize) -> Moment {

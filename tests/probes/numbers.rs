@@ -1,6 +1,6 @@
 //! Inputs of probes: the same in every run, and none of them trivial.
 
-use crate::model::rng::{Address, Stream};
+use crate::random::philox::{Address, Stream};
 
 /// A sequence of random numbers.
 pub(super) struct Numbers(Address);

@@ -1,4 +1,4 @@
-//! Probes of the functions that see nothing but their arguments: shaders/lanes.wgsl, math.wgsl, rng.wgsl, and those of this
+//! Probes of the functions that see nothing but their arguments: shaders/lanes.wgsl, math.wgsl, philox.wgsl, and those of this
 //! kind in plant_uav.wgsl.
 
 use super::harness::{Case, Compared, Expected, Job, Lab};
@@ -7,10 +7,10 @@ use super::shapes;
 use super::tracked::Tracked;
 use super::world::World;
 use crate::model::lanes::Lane;
-use crate::model::math;
+use crate::model::lanes::math;
 use crate::model::plant::clamp;
-use crate::model::plant_uav::{Axis, body_axis};
-use crate::model::rng::{Address, Stream, key, philox4x32, wide_product};
+use crate::model::plant::uav::{Axis, body_axis};
+use crate::random::philox::{Address, Stream, key, philox4x32, wide_product};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Inputs of a probe, beside the edge cases.

@@ -1,14 +1,15 @@
 //! The shapes that are checked and probed.
 
-use crate::backend::gpu::lists::{LISTS, Lists};
-use crate::backend::gpu::shader::PLANTS;
-use crate::backend::gpu::shader::Shape;
-use crate::campaign::{ActuationKind, Uav};
+use crate::agent::ActuationKind;
+use crate::agent::Uav;
+use crate::agent::robot::Robot;
+use crate::backend::gpu::shape::PLANTS;
+use crate::backend::gpu::shape::Shape;
+use crate::backend::gpu::signals::{LISTS, Lists};
 use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;
-use crate::model::plant_biped::Leg;
-use crate::model::plant_uav::{Attitude, Axis, Thrust, Translation};
-use crate::robot::Robot;
+use crate::model::plant::biped::Leg;
+use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
 
 /// How many items each list has, in the order of [`LISTS`], how many turbulences there are, and vortices where channels are those

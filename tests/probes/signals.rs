@@ -1,4 +1,4 @@
-//! Probes of shaders/signal.wgsl and metric.wgsl: what acts on a channel, and what is kept of it.
+//! Probes of shaders/exogenous.wgsl and metric.wgsl: what acts on a channel, and what is kept of it.
 
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};
@@ -6,12 +6,12 @@ use super::memory::moment;
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World, episode};
-use crate::backend::gpu::lists::{switches, waves};
-use crate::backend::gpu::words::NEVER;
+use crate::backend::gpu::layout::NEVER;
+use crate::backend::gpu::signals::{switches, waves};
+use crate::model::exogenous::delay_line::Actuator;
+use crate::model::exogenous::{Signals, Wave, turned};
 use crate::model::lanes::{Lane, MAX_WIDTH};
-use crate::model::memory::Actuator;
 use crate::model::metric::Sample;
-use crate::model::signal::{Signals, Wave, turned};
 
 /// The first step after `step` at which a switch of a channel turns.
 pub(super) fn next_change<const NC: usize>(

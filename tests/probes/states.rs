@@ -4,17 +4,17 @@ use super::numbers::Numbers;
 use super::shapes::RING_STEPS;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::lists::{LISTS, Lists};
+use crate::backend::gpu::signals::{LISTS, Lists};
 use crate::draw::member;
 use crate::model::agent::Agent;
-use crate::model::condition::Condition;
+use crate::model::exogenous::delay_line::Ring;
+use crate::model::exogenous::noise::{Filter, Noise, Turbulence};
+use crate::model::exogenous::vortex::Vortex;
+use crate::model::exogenous::window::{Burst, Switch};
+use crate::model::exogenous::{Signals, Wave};
+use crate::model::inputs::Condition;
 use crate::model::lanes::{Lane, MAX_WIDTH};
-use crate::model::memory::Ring;
 use crate::model::metric::Sums;
-use crate::model::noise::{Filter, Noise, Turbulence};
-use crate::model::signal::{Signals, Wave};
-use crate::model::switch::{Burst, Switch};
-use crate::model::vortex::Vortex;
 
 /// Purposes of random numbers.
 const CONDITION: u32 = 1;

@@ -3,7 +3,7 @@
 
 use super::table::probes;
 use super::{layout, shapes};
-use crate::backend::gpu::group::ENTRIES;
+use crate::backend::gpu::pipeline::ENTRIES;
 use std::collections::BTreeSet;
 
 /// Names of twins, `(in Rust, in WGSL)`.
@@ -13,7 +13,7 @@ type Pairs = &'static [(&'static str, &'static str)];
 const TWINS: &[(&str, &str, Pairs)] = &[
     (
         "lanes",
-        include_str!("../../src/model/lanes.rs"),
+        include_str!("../../src/model/lanes/mod.rs"),
         &[
             ("max", "lane_max"),
             ("min", "lane_min"),
@@ -25,7 +25,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "math",
-        include_str!("../../src/model/math.rs"),
+        include_str!("../../src/model/lanes/math.rs"),
         &[
             ("polynomial", "polynomial_4"),
             ("polynomial", "polynomial_5"),
@@ -39,8 +39,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "rng",
-        include_str!("../../src/model/rng.rs"),
+        "philox",
+        include_str!("../../src/random/philox.rs"),
         &[
             ("wide_product", "wide_product"),
             ("philox4x32", "philox4x32"),
@@ -65,7 +65,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "plant",
-        include_str!("../../src/model/plant.rs"),
+        include_str!("../../src/model/plant/mod.rs"),
         &[
             ("reference", "reference"),
             ("respond", "respond"),
@@ -74,7 +74,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "plant_uav",
-        include_str!("../../src/model/plant_uav.rs"),
+        include_str!("../../src/model/plant/uav.rs"),
         &[
             ("reference", "reference"),
             ("answer", "axis_respond"),
@@ -86,7 +86,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "plant_biped",
-        include_str!("../../src/model/plant_biped.rs"),
+        include_str!("../../src/model/plant/biped.rs"),
         &[
             ("reference", "reference"),
             ("respond", "respond"),
@@ -96,12 +96,12 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "leg",
-        include_str!("../../src/model/leg.rs"),
+        include_str!("../../src/model/plant/leg/mod.rs"),
         &[("accelerations", "forward_dynamics")],
     ),
     (
         "link",
-        include_str!("../../src/model/leg/link.rs"),
+        include_str!("../../src/model/plant/leg/link.rs"),
         &[
             ("turn", "turn"),
             ("damped", "damped"),
@@ -126,8 +126,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "switch",
-        include_str!("../../src/model/switch.rs"),
+        "window",
+        include_str!("../../src/model/exogenous/window.rs"),
         &[
             ("weight", "switch_weight"),
             ("at", "switch_at"),
@@ -135,8 +135,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "memory",
-        include_str!("../../src/model/memory.rs"),
+        "delay_line",
+        include_str!("../../src/model/exogenous/delay_line.rs"),
         &[
             ("command", "actuator_command"),
             ("hold", "ring_hold"),
@@ -149,7 +149,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "noise",
-        include_str!("../../src/model/noise.rs"),
+        include_str!("../../src/model/exogenous/noise.rs"),
         &[
             ("normal_pair", "normal_pair"),
             ("draw", "noise_draw"),
@@ -158,8 +158,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "signal",
-        include_str!("../../src/model/signal.rs"),
+        "exogenous",
+        include_str!("../../src/model/exogenous/mod.rs"),
         &[
             ("ticks", "signals_ticks"),
             ("hold", "signals_hold"),
@@ -171,8 +171,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "command",
-        include_str!("../../src/model/signal/command.rs"),
+        "command_path",
+        include_str!("../../src/model/exogenous/command_path.rs"),
         &[
             ("hold_command", "hold_command"),
             ("carry_command", "carry_command"),
@@ -191,7 +191,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "vortex",
-        include_str!("../../src/model/vortex.rs"),
+        include_str!("../../src/model/exogenous/vortex.rs"),
         &[
             ("jet_profile", "jet_profile"),
             ("jet_growth", "jet_growth"),
@@ -212,8 +212,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
-        "group",
-        include_str!("../../src/model/group.rs"),
+        "team",
+        include_str!("../../src/model/team.rs"),
         &[
             ("team_commands", "team_commands"),
             ("finite", "finite"),

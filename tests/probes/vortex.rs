@@ -5,9 +5,9 @@ use super::numbers::Numbers;
 use super::pure::{near, number, probe, words};
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::model::group::finite;
+use crate::model::exogenous::vortex::{Vortex, jet_growth, jet_profile, jet_share, vortex_force};
 use crate::model::lanes::Lane;
-use crate::model::vortex::{Vortex, jet_growth, jet_profile, jet_share, vortex_force};
+use crate::model::team::finite;
 
 pub(super) fn jets(lab: &Lab) -> Compared {
     let body = "

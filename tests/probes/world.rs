@@ -5,18 +5,19 @@ use super::harness::{Case, Compared, Expected, Job, Lab, Left};
 use super::image::{FAILED, image, image_words, stored};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
-use crate::backend::gpu::setting::{GainsWords, PlantWords, SettingHead};
-use crate::backend::gpu::shader::Shape;
-use crate::backend::gpu::words::{self, NEVER, Span};
+use crate::backend::gpu::layout;
+use crate::backend::gpu::layout::{NEVER, Span};
+use crate::backend::gpu::shape::Shape;
+use crate::backend::gpu::uniforms::{GainsWords, PlantWords, SettingHead};
 use crate::model::agent::Setting;
 use crate::model::controller::ChannelGains;
 use crate::model::episode::PlantKind;
-use crate::model::group::Group;
 use crate::model::integrator::Step;
 use crate::model::lanes::MAX_WIDTH;
 use crate::model::metric::Limits;
 use crate::model::plant::{Plant, ReferenceRow};
-use crate::model::rng::key;
+use crate::model::team::Group;
+use crate::random::philox::key;
 
 /// The fewest invocations of a probe.
 const CASES: usize = 400;
@@ -234,7 +235,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
                     let before = image(made, channel, Expected::Bits(NEVER));
                     let asked = &scene.asked[agent][channel];
                     cases[self.case(index, channel, agent)] = Case {
-                        drawn: words::drawn(episode(index), &condition, channel),
+                        drawn: layout::drawn(episode(index), &condition, channel),
                         stored: stored(made, channel, &shape.lists)
                             .into_iter()
                             .map(|(word, _)| word.word())

@@ -4,10 +4,10 @@ use crate::common::{altered, campaign, fly, shipped_campaigns, tables};
 use polars::prelude::DataType;
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::{Campaign, Distribution, FaultKind, FaultTarget};
-use urts_mc::comparison::{compare, summarise};
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::gains::GainSet;
-use urts_mc::tables::Status;
+use urts_mc::results::tables::Status;
+use urts_mc::results::{compare, summarise};
 
 #[test]
 fn every_shipped_campaign_is_valid_and_bears_its_file_name() {

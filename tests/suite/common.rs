@@ -5,8 +5,8 @@ use urts_mc::backend::Flown;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, Wanted, adapters};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
-use urts_mc::tables::Tables;
+use urts_mc::controllers::GainSet;
+use urts_mc::results::tables::Tables;
 
 /// A file of this repository.
 pub(crate) fn repository(path: &str) -> PathBuf {

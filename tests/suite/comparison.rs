@@ -2,12 +2,12 @@
 
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
-use urts_mc::comparison::{
+use urts_mc::random::philox::{Address, Stream};
+use urts_mc::results::sensitivity::worst;
+use urts_mc::results::tables::{Scores, Status};
+use urts_mc::results::{
     compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
 };
-use urts_mc::model::rng::{Address, Stream};
-use urts_mc::ranking::worst;
-use urts_mc::tables::{Scores, Status};
 
 /// One UAV under two controllers; episodes take turns: an actuator fault, a sensor fault, none.
 fn campaign(episodes: u32) -> Campaign {

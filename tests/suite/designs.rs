@@ -3,14 +3,14 @@
 use crate::common::{altered, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
-use urts_mc::comparison::{compare, comparison_table, summarise, summary_table, verdict};
 use urts_mc::draw::{Episode, draw};
-use urts_mc::flight::Settings;
-use urts_mc::output::OutputDir;
-use urts_mc::ranking::{rank, ranking_table};
-use urts_mc::replay::replay;
+use urts_mc::results::sensitivity::{rank, ranking_table};
+use urts_mc::results::tables::{Scores, Status, Table};
+use urts_mc::results::{compare, comparison_table, summarise, summary_table, verdict};
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
-use urts_mc::tables::{Scores, Status, Table};
+use urts_mc::simulation::Settings;
 
 fn sampled(design: &str, replicates: u32, episodes: u32) -> Campaign {
     let text = format!("[sampling]\ndesign = \"{design}\"\nreplicates = {replicates}\n[verdict]");

@@ -6,11 +6,11 @@ use std::fs;
 use urts_mc::backend::Flown;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::flight::Settings;
-use urts_mc::gains::GainSet;
-use urts_mc::output::OutputDir;
-use urts_mc::replay::replay;
+use urts_mc::controllers::GainSet;
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
+use urts_mc::simulation::Settings;
 
 /// Campaigns of UAVs and of robots with noise and every other kind of signal, short, and with a number of episodes that fills no
 /// block.

@@ -12,7 +12,7 @@ mod wind;
 use crate::common::repository;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::model::Shown;
 
 const STEP_S: f64 = 0.002;

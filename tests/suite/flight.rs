@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{Gpu, GpuError, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::cross_check::cross_check;
-use urts_mc::flight::{Backend, Engine, Flight, FlightError, Leg, Settings, fly};
-use urts_mc::gains::GainSet;
-use urts_mc::manifest::Manifest;
-use urts_mc::output::OutputDir;
+use urts_mc::controllers::GainSet;
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::manifest::Manifest;
 use urts_mc::run::{Extras, Progress, run_on};
+use urts_mc::simulation::cross_check::cross_check;
+use urts_mc::simulation::{Backend, Engine, Flight, FlightError, Leg, Settings, fly};
 
 /// 24 short episodes.
 fn short() -> Campaign {

@@ -20,9 +20,10 @@ mod mutations;
 mod parity;
 
 use crate::common::{altered, repository};
+use urts_mc::agent::Agent;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
-use urts_mc::campaign::{Agent, Campaign};
+use urts_mc::campaign::Campaign;
 use urts_mc::synthesis::LoopGains;
 
 /// Gains of every controller on every channel group.

@@ -37,14 +37,20 @@ macro_rules! on_every_lane {
         #[cfg(target_arch = "x86_64")]
         {
             if Simd::Avx2.is_available() {
-                urts_mc::model::simd::F32x8::dispatch(Apply::<urts_mc::model::simd::F32x8, _>(
-                    $check::<urts_mc::model::simd::F32x8>,
+                urts_mc::model::lanes::simd::F32x8::dispatch(Apply::<
+                    urts_mc::model::lanes::simd::F32x8,
+                    _,
+                >(
+                    $check::<urts_mc::model::lanes::simd::F32x8>,
                     std::marker::PhantomData,
                 ));
             }
             if Simd::Avx512.is_available() {
-                urts_mc::model::simd::F32x16::dispatch(Apply::<urts_mc::model::simd::F32x16, _>(
-                    $check::<urts_mc::model::simd::F32x16>,
+                urts_mc::model::lanes::simd::F32x16::dispatch(Apply::<
+                    urts_mc::model::lanes::simd::F32x16,
+                    _,
+                >(
+                    $check::<urts_mc::model::lanes::simd::F32x16>,
                     std::marker::PhantomData,
                 ));
             }

@@ -4,13 +4,13 @@ mod independent;
 
 use crate::common::{golden, repository};
 use nalgebra::Vector3;
+use urts_mc::agent::robot::Robot;
 #[cfg(target_arch = "x86_64")]
 use urts_mc::backend::cpu::Simd;
-use urts_mc::model::lanes::{Kernel, Lane};
-use urts_mc::model::leg::{LegJoint, LegModel, forward_dynamics};
 #[cfg(target_arch = "x86_64")]
-use urts_mc::model::simd::{F32x8, F32x16};
-use urts_mc::robot::Robot;
+use urts_mc::model::lanes::simd::{F32x8, F32x16};
+use urts_mc::model::lanes::{Kernel, Lane};
+use urts_mc::model::plant::leg::{LegJoint, LegModel, forward_dynamics};
 
 /// The joints of both legs of a shipped robot, and gravity.
 fn robot(name: &str) -> ([[LegJoint; 6]; 2], Vector3<f64>) {

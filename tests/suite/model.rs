@@ -3,8 +3,8 @@
 use crate::common::{altered, campaign, fly};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::gains::GainSet;
 
 /// The largest |e| difference at the end of a smooth episode between two steps.
 fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {

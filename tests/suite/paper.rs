@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
-use urts_mc::output::OutputDir;
-use urts_mc::paper::{Claim, Flights, claim_dir, claims, paper};
+use urts_mc::report::paper::{Claim, Flights, claim_dir, claims, paper};
+use urts_mc::run::directory::OutputDir;
 
 /// The numbers of a sentence, in order.
 fn numbers(text: &str) -> Vec<f64> {

@@ -3,8 +3,8 @@
 use crate::common::{campaign, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
-use urts_mc::ranking::{RankedCondition, rank, worst};
-use urts_mc::tables::{Scores, Status};
+use urts_mc::results::sensitivity::{RankedCondition, rank, worst};
+use urts_mc::results::tables::{Scores, Status};
 
 /// A campaign whose controllers have reasons to fail, and its scores.
 fn flown(name: &str, episodes: u32) -> (Campaign, Scores) {
@@ -113,7 +113,7 @@ fn the_worst_episodes_are_those_that_failed_then_those_nearest_to_it() {
                 .all(|own| own.controller == campaign.controllers[controller])
         );
         for pair in listed.windows(2) {
-            let key = |own: &urts_mc::ranking::WorstEpisode| (own.status, own.excess);
+            let key = |own: &urts_mc::results::sensitivity::WorstEpisode| (own.status, own.excess);
             assert!(key(&pair[0]) >= key(&pair[1]) && pair[0].rank + 1 == pair[1].rank);
         }
         // Nothing that is not listed is worse.

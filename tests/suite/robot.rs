@@ -14,7 +14,7 @@ mod urdf;
 
 use crate::common::repository;
 use nalgebra::Vector6;
-use urts_mc::robot::Robot;
+use urts_mc::agent::robot::Robot;
 
 /// The two shipped robots.
 fn shipped() -> [Robot; 2] {

@@ -1,6 +1,6 @@
 //! Designs: exact balance, independence of dimensions, and what they gain and may conclude.
 
-use urts_mc::sampling::{Design, Method, allows, latin_hypercube, sobol};
+use urts_mc::random::{Design, Method, allows, latin_hypercube, sobol};
 use urts_mc::statistics::{Interval, replicate_mean, wilson};
 
 const SEED: u64 = 2026;

@@ -5,7 +5,7 @@ use crate::common::{altered, golden};
 use serde_json::Value;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::model::Shown;
 use urts_mc::model::episode::Snapshot;
 

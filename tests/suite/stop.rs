@@ -4,17 +4,17 @@ use crate::common::{altered, gpu_or_skip};
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, Goal};
-use urts_mc::comparison::{summarise, summary_table};
-use urts_mc::flight::{Backend, Flight, Settings, fly};
-use urts_mc::gains::GainSet;
-use urts_mc::manifest::Manifest;
-use urts_mc::model::rng::{Address, Stream};
-use urts_mc::output::OutputDir;
-use urts_mc::replay::replay;
+use urts_mc::controllers::GainSet;
+use urts_mc::random::philox::{Address, Stream};
+use urts_mc::results::tables::Status;
+use urts_mc::results::{summarise, summary_table};
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::manifest::Manifest;
+use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
+use urts_mc::simulation::stopping::{Stopped, Watch};
+use urts_mc::simulation::{Backend, Flight, Settings, fly};
 use urts_mc::statistics::{clopper_pearson_upper, sequential_interval, sequential_upper};
-use urts_mc::stop::{Stopped, Watch};
-use urts_mc::tables::Status;
 
 fn stopping(keys: &str, episodes: u32) -> Campaign {
     altered(

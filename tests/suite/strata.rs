@@ -4,7 +4,7 @@ use crate::common::{altered, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::{Campaign, StratumFaults};
 use urts_mc::draw::{Episode, draw};
-use urts_mc::ranking::rank;
+use urts_mc::results::sensitivity::rank;
 
 const SCREENING: &str = r#"[[strata]]
 faults = "each"

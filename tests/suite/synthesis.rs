@@ -6,8 +6,9 @@
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 use std::sync::LazyLock;
+use urts_mc::agent::ChannelRole;
 use urts_mc::synthesis::{
-    ChannelDesign, ChannelRole, ChannelSynthesis, ControllerGains, LOOP_STATES, Preset, Smoothing,
+    ChannelDesign, ChannelSynthesis, ControllerGains, LOOP_STATES, Preset, Smoothing,
     SmoothingRule, Step, SynthesisError, Verified, augmented_channel, feedback_riccati,
     geometric_q2, loop_gains, observer_riccati, pid_gains, pid_tuned_gains, poles, synthesize,
     verify,

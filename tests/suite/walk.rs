@@ -12,8 +12,8 @@ mod refusals;
 mod straight;
 mod turning;
 
+use urts_mc::agent::robot::Robot;
 use urts_mc::reference::walk::{Gait, Walk, ground_reaction, zmp};
-use urts_mc::robot::Robot;
 
 fn g1() -> Robot {
     Robot::g1().unwrap()

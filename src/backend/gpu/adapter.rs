@@ -1,8 +1,11 @@
 //! Which GPUs there are, and which one a run takes.
 
 use super::GpuError;
-use super::device::MEMORY_PERCENT;
 use serde::{Deserialize, Serialize};
+
+/// Share of the device's free memory that a run may take, percent: an allocation beyond is refused, which is better than a
+/// driver that swaps or fails later.
+pub(super) const MEMORY_PERCENT: u8 = 80;
 
 /// What kind of device an adapter is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

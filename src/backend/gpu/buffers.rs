@@ -1,10 +1,11 @@
 //! What a batch of episodes needs on the device, within the limits of buffers and memory.
 
 use super::GpuError;
-use super::device::{self, Gpu, Use};
-use super::flight::Tuning;
-use super::group::{Group, MAX_BATCH};
-use super::words::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::batch::Tuning;
+use super::device;
+use super::device::{Gpu, Use};
+use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::pipeline::{Group, MAX_BATCH};
 use crate::model::episode::Model;
 use std::ops::Range;
 

@@ -1,16 +1,14 @@
 //! An open device: compiling, allocating, submitting and reading back, each with its errors.
 
 use super::GpuError;
-use super::adapter::{self, Adapter, Wanted};
+use super::adapter;
+use super::adapter::{Adapter, MEMORY_PERCENT, Wanted};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How long a submission may take. Spans are fractions of a second; a driver that hangs resets the device long before this.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Share of the device's free memory that a run may take, percent: an allocation beyond is refused, which is better than a
-/// driver that swaps or fails later.
-pub(super) const MEMORY_PERCENT: u8 = 80;
 /// Words that are on their way to the device at once: what waits for the next submission lies in memory that the device can
 /// map, which is small on some cards.
 const UPLOAD: usize = 4 << 20;

@@ -7,24 +7,24 @@
 //! batches show in the result. shaders/README.md counts registers, bytes and operations.
 
 mod adapter;
+mod batch;
 mod buffers;
 mod device;
-mod flight;
-mod group;
-pub(crate) mod lists;
-pub(crate) mod setting;
-pub(crate) mod shader;
-pub(crate) mod words;
+pub(crate) mod layout;
+mod pipeline;
+pub(crate) mod shape;
+pub(crate) mod signals;
+pub(crate) mod uniforms;
 
 #[cfg(test)]
 #[path = "../../../tests/probes/mod.rs"]
 mod probes;
 
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
+pub use batch::{GpuFlyer, GpuTimes, Tuning};
 pub use device::Gpu;
-pub use flight::{GpuFlyer, GpuTimes, Tuning};
 
-use crate::nearest::did_you_mean;
+use crate::util::suggest::did_you_mean;
 use thiserror::Error;
 
 /// Why a GPU cannot fly episodes, or cannot go on.

@@ -1,7 +1,7 @@
 //! Values that have several forms, read by hand: serde's untagged enums would hide what is wrong with a value, and its
 //! structs would take a list for a table.
 
-use crate::list::List;
+use crate::util::fixed_list::List;
 use schemars::JsonSchema;
 use serde::de::value::{Error as PlainError, MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};

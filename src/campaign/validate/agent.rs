@@ -1,10 +1,12 @@
 //! `[agent]`.
 
-use super::super::check::{Bounds, Check};
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::{Agent, Biped, RobotFile, Uav};
-use crate::robot::{self, Robot, RobotError};
+use crate::agent::ActuationKind;
+use crate::agent::robot;
+use crate::agent::robot::{Robot, RobotError};
+use crate::agent::{Agent, Biped, RobotFile, Uav};
+use crate::campaign::check::{Bounds, Check};
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
 use std::path::Path;
 
 /// The paper's UAV, section V.

@@ -1,10 +1,10 @@
 //! Names of faults and `[[strata]]`.
 
-use super::super::check::Check;
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::plan::{ALL, Strata, Stratum, StratumFaults};
-use crate::nearest::did_you_mean;
+use crate::campaign::check::Check;
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
+use crate::campaign::plan::{ALL, Strata, Stratum, StratumFaults};
+use crate::util::suggest::did_you_mean;
 use std::sync::Arc;
 
 /// Longest name of a fault or stratum: it heads lines and fills cells.

@@ -1,13 +1,14 @@
 //! `[reference]`.
 
-use super::super::check::{Bounds, Check};
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::{Agent, FIRST_ATTITUDE};
+use crate::agent::ActuationKind;
+use crate::agent::robot::Robot;
+use crate::agent::{Agent, FIRST_ATTITUDE};
+use crate::campaign::check::{Bounds, Check};
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
 use crate::reference::path::{DEFAULT_STEP_M, PathLimits};
 use crate::reference::walk::{Foot, Gait, WalkError};
 use crate::reference::{AgentWalk, Reference, Sinusoid, Walk, WaypointPath};
-use crate::robot::Robot;
 use std::sync::Arc;
 
 /// The channel after roll and pitch.

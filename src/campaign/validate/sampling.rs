@@ -1,13 +1,12 @@
 //! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
 
-use super::super::Requirement;
-use super::super::check::{Bounds, Check};
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::plan::{ALL, Goal, Sampling, Stop, Strata};
-use crate::draw::MOST_ENTRIES;
-use crate::nearest::did_you_mean;
-use crate::sampling::{Method, allows};
+use crate::campaign::Requirement;
+use crate::campaign::check::{Bounds, Check};
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
+use crate::campaign::plan::{ALL, Goal, Sampling, Stop, Strata};
+use crate::random::{MOST_ENTRIES, Method, allows};
+use crate::util::suggest::did_you_mean;
 use std::sync::Arc;
 
 /// Replicates of a design, if nothing else is asked for.

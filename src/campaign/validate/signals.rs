@@ -1,11 +1,11 @@
 //! `[[disturbance]]` and `[[fault]]`.
 
-use super::super::check::{Bounds, Check, Parameter, Written, of_agent};
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::{
-    Agent, Distribution, Disturbance, Drawn, FIRST_ATTITUDE, Fault, FaultChannels, Time,
-};
+use crate::agent::ActuationKind;
+use crate::agent::{Agent, FIRST_ATTITUDE};
+use crate::campaign::check::{Bounds, Check, Parameter, Written, of_agent};
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
+use crate::campaign::{Distribution, Disturbance, Drawn, Fault, FaultChannels, Time};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::sync::Arc;

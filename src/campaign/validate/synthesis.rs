@@ -1,11 +1,14 @@
 //! `[synthesis]` and the controllers that it can give.
 
-use super::super::check::Check;
-use super::super::error::CampaignError;
-use super::super::file::*;
-use super::super::{Agent, FTC, GainSource, NamedGains, PID, PID_TUNED};
-use crate::nearest::did_you_mean;
-use crate::synthesis::{ChannelDesign, ChannelRole, Preset, SmoothingRule, SynthesisError};
+use crate::agent::ActuationKind;
+use crate::agent::Agent;
+use crate::agent::ChannelRole;
+use crate::campaign::check::Check;
+use crate::campaign::error::CampaignError;
+use crate::campaign::file::*;
+use crate::campaign::{FTC, GainSource, NamedGains, PID, PID_TUNED};
+use crate::synthesis::{ChannelDesign, Preset, SmoothingRule, SynthesisError};
+use crate::util::suggest::did_you_mean;
 use std::path::Path;
 
 impl Check<'_> {

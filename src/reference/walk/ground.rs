@@ -2,8 +2,9 @@
 
 use super::Walk;
 use super::feet::Foot;
-use crate::robot::wrench::{self, JointMotion, PelvisMotion, whole_body_wrench};
-use crate::robot::{JOINTS, Robot};
+use crate::agent::robot::wrench;
+use crate::agent::robot::wrench::{JointMotion, PelvisMotion, whole_body_wrench};
+use crate::agent::robot::{JOINTS, Robot};
 use nalgebra::Vector3;
 
 /// The reaction of the ground at one instant.

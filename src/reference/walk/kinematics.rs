@@ -4,8 +4,8 @@
 use super::course::Placement;
 use super::feet::{Ankle, Foot};
 use super::{Gait, WalkError};
-use crate::robot::kinematics::{by_leg, com_m, joined, leg_pose};
-use crate::robot::{JOINTS, Leg, Robot};
+use crate::agent::robot::kinematics::{by_leg, com_m, joined, leg_pose};
+use crate::agent::robot::{JOINTS, Leg, Robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3, Vector6};
 
 /// Largest component of the pose error at the solution, m and rad.

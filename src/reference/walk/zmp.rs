@@ -3,7 +3,7 @@
 use super::Gait;
 use super::course::Placement;
 use super::feet::{Feet, Foot};
-use crate::robot::Robot;
+use crate::agent::robot::Robot;
 
 /// The reference of the zero moment point: linear between its corners, constant outside.
 #[derive(Clone, Debug)]

@@ -2,13 +2,13 @@
 
 use crate::rates::processor_time;
 use std::hint::black_box;
+use urts_mc::agent::robot::Robot;
 #[cfg(target_arch = "x86_64")]
 use urts_mc::backend::cpu::Simd;
-use urts_mc::model::lanes::{Kernel, Lane};
-use urts_mc::model::leg::{LegJoint, LegModel, forward_dynamics};
 #[cfg(target_arch = "x86_64")]
-use urts_mc::model::simd::{F32x8, F32x16};
-use urts_mc::robot::Robot;
+use urts_mc::model::lanes::simd::{F32x8, F32x16};
+use urts_mc::model::lanes::{Kernel, Lane};
+use urts_mc::model::plant::leg::{LegJoint, LegModel, forward_dynamics};
 
 /// Calls of one measurement: some tens of milliseconds, since processor time is counted in steps of a few.
 const CALLS: u32 = 400_000;

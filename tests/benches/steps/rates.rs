@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::model::lanes::{Kernel, Lane};
 
 /// Layouts and the episodes of one measurement: a few tenths of a second each.
@@ -103,8 +103,8 @@ fn peak(simd: Option<Simd>) -> Option<f64> {
     #[cfg(target_arch = "x86_64")]
     match simd? {
         Simd::Scalar => None,
-        Simd::Avx2 => Some(measured_peak::<urts_mc::model::simd::F32x8>()),
-        Simd::Avx512 => Some(measured_peak::<urts_mc::model::simd::F32x16>()),
+        Simd::Avx2 => Some(measured_peak::<urts_mc::model::lanes::simd::F32x8>()),
+        Simd::Avx512 => Some(measured_peak::<urts_mc::model::lanes::simd::F32x16>()),
     }
     #[cfg(not(target_arch = "x86_64"))]
     {

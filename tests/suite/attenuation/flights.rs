@@ -1,11 +1,13 @@
 //! (24) on the flights of campaigns: where it applies, where it does not and why, and what it says.
 
 use crate::common::{altered, campaign};
-use urts_mc::attenuation::{Attenuation, Attenuations, NotApplicable, Witness, is_smooth};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::Campaign;
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::gains::GainSet;
+use urts_mc::simulation::attenuation::{
+    Attenuation, Attenuations, NotApplicable, Witness, is_smooth,
+};
 
 /// What (24) says about an episode under a controller.
 fn found(campaign: &Campaign, controller: &str, episode: u32) -> Attenuations {

@@ -3,7 +3,7 @@
 use crate::common::golden;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::sync::LazyLock;
-use urts_mc::attenuation::{Attenuation, NotApplicable, Sample, Stretch, Theorem};
+use urts_mc::simulation::attenuation::{Attenuation, NotApplicable, Sample, Stretch, Theorem};
 use urts_mc::synthesis::{ChannelSynthesis, Preset, augmented_channel, synthesize};
 
 /// The paper's UAV channel: 12 states, taps 0.1 s apart.

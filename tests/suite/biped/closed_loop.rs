@@ -6,7 +6,8 @@
 
 use crate::common::{campaign, golden};
 use serde_json::Value;
-use urts_mc::campaign::{Agent, Campaign};
+use urts_mc::agent::Agent;
+use urts_mc::campaign::Campaign;
 use urts_mc::draw::draw;
 use urts_mc::model::episode::{Controller, Model, Snapshot};
 use urts_mc::reference::Reference;

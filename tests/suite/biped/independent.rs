@@ -3,13 +3,14 @@
 
 use super::everything;
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use urts_mc::agent::Agent;
+use urts_mc::agent::robot::dynamics::{bias_force, mass_matrix};
+use urts_mc::agent::robot::{JOINTS, Joint, LEG_JOINTS, Robot};
 use urts_mc::backend::cpu::{Cpu, Precision};
-use urts_mc::campaign::{Agent, Campaign, DisturbanceKind, FaultKind, FaultTarget};
+use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget};
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::{AgentDraw, Episode, draw};
-use urts_mc::gains::GainSet;
 use urts_mc::model::Shown;
-use urts_mc::robot::dynamics::{bias_force, mass_matrix};
-use urts_mc::robot::{JOINTS, Joint, LEG_JOINTS, Robot};
 use urts_mc::synthesis::LoopGains;
 
 /// Steps that are compared: every fault begins among them.

@@ -6,12 +6,12 @@ use std::ops::Range;
 use urts_mc::backend::Flown;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::{Episode, draw};
-use urts_mc::gains::GainSet;
 use urts_mc::model::episode::{AgentOutcome, Controller, Model};
 use urts_mc::model::lanes::Lane;
 #[cfg(target_arch = "x86_64")]
-use urts_mc::model::simd::{F32x8, F32x16};
+use urts_mc::model::lanes::simd::{F32x8, F32x16};
 
 fn flown(
     campaign: &Campaign,

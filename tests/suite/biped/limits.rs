@@ -1,8 +1,9 @@
 //! Torques at their limits.
 
 use crate::common::{altered, fly};
+use urts_mc::agent::Agent;
 use urts_mc::backend::cpu::Precision;
-use urts_mc::campaign::{Agent, Campaign};
+use urts_mc::campaign::Campaign;
 
 /// A robot that starts so far off that correcting it takes more torque than its joints have.
 fn hurried(actuation: &str) -> Campaign {

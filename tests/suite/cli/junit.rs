@@ -4,8 +4,8 @@ use super::Place;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use urts_mc::junit::junit;
-use urts_mc::manifest::Manifest;
+use urts_mc::report::junit::junit;
+use urts_mc::run::manifest::Manifest;
 
 /// An element of an XML text: its name, attributes and how deep it lies.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use super::{Place, smoke};
 use crate::common::{altered, campaign};
 use urts_mc::campaign::Campaign;
-use urts_mc::cautions::cautions;
+use urts_mc::campaign::lints::cautions;
 use urts_mc::reference::Reference;
 
 /// The smoke campaign with so many episodes and a requirement on the FTC, and tables before it.

@@ -2,8 +2,8 @@
 
 use super::{Ended, Place};
 use urts_mc::campaign::Campaign;
-use urts_mc::comparison::how_sure;
-use urts_mc::replay::command;
+use urts_mc::results::how_sure;
+use urts_mc::run::replay::command;
 
 const ESCAPE: char = '\x1b';
 /// A campaign with a requirement that holds, one that does not, and the other half of an unequal comparison.

@@ -3,7 +3,7 @@
 use super::Place;
 use crate::common::repository;
 use std::fs;
-use urts_mc::replay::{Replay, replay};
+use urts_mc::run::replay::{Replay, replay};
 
 /// A short flight of three UAVs whose y is struck from 1 s to 1.5 s, and nothing else.
 fn struck() -> Place {

@@ -3,7 +3,7 @@
 use crate::common::repository;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 
 #[test]
 fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {

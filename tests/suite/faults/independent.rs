@@ -2,7 +2,7 @@
 //! limits of rate spelled out for every stage.
 
 use super::{AMPLITUDE_M, DRAG_N_S_M, FREQUENCY_RAD_S, MASS_KG, STEP_S, X, campaign, flight};
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::synthesis::LoopGains;
 
 const ONSET: usize = 150;

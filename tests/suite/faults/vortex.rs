@@ -2,12 +2,12 @@
 
 use super::{BASE, DRAG_N_S_M, MASS_KG, flight, near};
 use crate::common::repository;
-use urts_mc::attenuation::obstacle;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::{Campaign, DisturbanceKind};
+use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::gains::GainSet;
 use urts_mc::model::Shown;
+use urts_mc::simulation::attenuation::obstacle;
 
 const Z: usize = 2;
 

@@ -6,9 +6,9 @@ use super::parity::{agreement, followed};
 use crate::common::{altered, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::Tuning;
-use urts_mc::cross_check::cross_check;
-use urts_mc::flight::{Backend, Settings, fly};
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
+use urts_mc::simulation::cross_check::cross_check;
+use urts_mc::simulation::{Backend, Settings, fly};
 
 /// One controller of [`mixed_biped`].
 const FTC: (&str, &str) = ("\"ftc\", \"pid\"", "\"ftc\"");

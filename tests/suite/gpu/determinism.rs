@@ -5,7 +5,7 @@ use crate::common::gpu_or_skip;
 use urts_mc::backend::Flown;
 use urts_mc::backend::gpu::{GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 
 /// Everything at once, short: 600 steps are two flushes of the metrics and 150 blocks of noise, and something is left over.
 fn short(episodes: &str, controllers: &str) -> (Campaign, Gains) {

@@ -6,7 +6,7 @@ use crate::common::{altered, campaign};
 use std::process::Command;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning, Wanted};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::reference::Reference;
 use urts_mc::synthesis::LoopGains;
 

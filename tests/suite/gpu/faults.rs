@@ -6,7 +6,7 @@ use super::{fly, jets, linked, replaced};
 use crate::common::{altered, gpu_or_skip};
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 
 /// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.
 fn has_all(campaign: &Campaign, missing: &[FaultKind]) {

@@ -6,7 +6,7 @@ use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixe
 use crate::common::gpu_or_skip;
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 
 /// What is wrong, the text that is right, and the wrong one.
 type Mutation = (&'static str, &'static str, &'static str);

@@ -8,7 +8,7 @@ use crate::common::gpu_or_skip;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::gains::GainSet;
+use urts_mc::controllers::GainSet;
 use urts_mc::model::Shown;
 
 /// Flies a campaign and demands agreement, in double and in single precision; none without an adapter.

@@ -4,9 +4,9 @@ use super::{Case, computed, random_cases, relative_error, robot};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 #[cfg(target_arch = "x86_64")]
 use urts_mc::backend::cpu::Simd;
-use urts_mc::model::leg::{LegJoint, LegModel};
 #[cfg(target_arch = "x86_64")]
-use urts_mc::model::simd::{F32x8, F32x16};
+use urts_mc::model::lanes::simd::{F32x8, F32x16};
+use urts_mc::model::plant::leg::{LegJoint, LegModel};
 
 /// The torques of a motion.
 fn inverse_dynamics(

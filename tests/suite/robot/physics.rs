@@ -2,12 +2,12 @@
 
 use super::{LegState, leg_states, load, numbers, shipped};
 use nalgebra::{Cholesky, Matrix3, Matrix6, Rotation3, Vector3, Vector6};
-use urts_mc::robot::dynamics::{
+use urts_mc::agent::robot::dynamics::{
     bias_force, forward_dynamics, gravity_torque, inverse_dynamics, mass_matrix,
 };
-use urts_mc::robot::kinematics::{by_leg, com_m, leg_pose};
-use urts_mc::robot::wrench::{JointMotion, PelvisMotion, Wrench, whole_body_wrench};
-use urts_mc::robot::{Body, JOINTS, Leg, Robot};
+use urts_mc::agent::robot::kinematics::{by_leg, com_m, leg_pose};
+use urts_mc::agent::robot::wrench::{JointMotion, PelvisMotion, Wrench, whole_body_wrench};
+use urts_mc::agent::robot::{Body, JOINTS, Leg, Robot};
 
 /// Step of central differences: truncation goes with its square, rounding with its inverse.
 const DIFFERENCE: f64 = 1e-5;

@@ -4,14 +4,14 @@ use super::load;
 use crate::common::golden;
 use nalgebra::{Matrix6, SMatrix, SVector};
 use serde_json::Value;
-use urts_mc::robot::dynamics::{
+use urts_mc::agent::robot::dynamics::{
     bias_force, forward_dynamics, gravity_torque, inverse_dynamics, mass_matrix,
 };
-use urts_mc::robot::kinematics::{by_leg, com_m, joined, leg_pose};
-use urts_mc::robot::wrench::{
+use urts_mc::agent::robot::kinematics::{by_leg, com_m, joined, leg_pose};
+use urts_mc::agent::robot::wrench::{
     JointMotion, PelvisMotion, ankles_m, ground_reaction, left_share, whole_body_wrench,
 };
-use urts_mc::robot::{JOINTS, LEG_JOINTS, Robot};
+use urts_mc::agent::robot::{JOINTS, LEG_JOINTS, Robot};
 
 /// Both sides are f64 and of some hundred operations each.
 const TOLERANCE: f64 = 1e-12;

@@ -4,9 +4,9 @@ use super::{load, shipped};
 use crate::common::repository;
 use proptest::prelude::*;
 use std::path::Path;
-use urts_mc::robot::dynamics::forward_dynamics;
-use urts_mc::robot::kinematics::{by_leg, com_m, leg_pose};
-use urts_mc::robot::{LEFT, RIGHT, Robot, RobotError, table};
+use urts_mc::agent::robot::dynamics::forward_dynamics;
+use urts_mc::agent::robot::kinematics::{by_leg, com_m, leg_pose};
+use urts_mc::agent::robot::{LEFT, RIGHT, Robot, RobotError, table};
 
 fn text(name: &str) -> String {
     std::fs::read_to_string(repository(&format!("campaigns/robots/{name}.toml"))).unwrap()

@@ -6,9 +6,9 @@ use super::{leg_states, load, shipped};
 use nalgebra::{Isometry3, Rotation3, Vector3};
 use std::fmt::Write;
 use std::path::Path;
-use urts_mc::robot::dynamics::{bias_force, mass_matrix};
-use urts_mc::robot::kinematics::{com_m, leg_pose};
-use urts_mc::robot::{Body, LEFT, RIGHT, Robot, RobotError, UrdfOptions, urdf};
+use urts_mc::agent::robot::dynamics::{bias_force, mass_matrix};
+use urts_mc::agent::robot::kinematics::{com_m, leg_pose};
+use urts_mc::agent::robot::{Body, LEFT, RIGHT, Robot, RobotError, UrdfOptions, urdf};
 
 fn parse(text: &str, options: &UrdfOptions) -> Result<Robot, RobotError> {
     urdf::parse(text, Path::new("robots/x.urdf"), options)
@@ -103,7 +103,7 @@ fn assert_same(one: &Robot, other: &Robot) {
     assert_eq!(one.base_height_m, other.base_height_m);
     for (a, b) in one.joints().zip(other.joints()) {
         assert_eq!(a.name, b.name);
-        let limits = |joint: &urts_mc::robot::Joint| {
+        let limits = |joint: &urts_mc::agent::robot::Joint| {
             [
                 joint.q_min_rad,
                 joint.q_max_rad,

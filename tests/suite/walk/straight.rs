@@ -247,6 +247,6 @@ fn val_own_center_of_mass_matches_an_early_iterate() {
     assert_eq!(y, 0.0);
     // Converged: the standing pose planned with it has its centre of mass there.
     let pose = walk.at(0.0).map(|joint| joint.value);
-    let com = urts_mc::robot::kinematics::com_m(&g1(), &pose);
+    let com = urts_mc::agent::robot::kinematics::com_m(&g1(), &pose);
     assert!((com.x - x).abs() <= 1e-11 && (com.z - z).abs() <= 1e-11);
 }

@@ -3,9 +3,9 @@
 use super::{g1, margins, quarter_turn, walk};
 use crate::common::repository;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use urts_mc::agent::robot::Robot;
+use urts_mc::agent::robot::wrench::{PelvisMotion, ankles_m};
 use urts_mc::reference::walk::{Foot, Gait, Walk};
-use urts_mc::robot::Robot;
-use urts_mc::robot::wrench::{PelvisMotion, ankles_m};
 
 /// Where the legs put the ankles at a time, m.
 fn ankles(robot: &Robot, walk: &Walk, t_s: f64) -> [nalgebra::Vector3<f64>; 2] {

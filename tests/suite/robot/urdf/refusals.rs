@@ -4,7 +4,7 @@ use super::{inertial, parse, written};
 use crate::robot::load;
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
-use urts_mc::robot::{Foot, LEFT, UrdfOptions};
+use urts_mc::agent::robot::{Foot, LEFT, UrdfOptions};
 
 /// What is said of the G1's URDF with the first occurrence of a text replaced.
 fn refusal_of(old: &str, new: &str) -> String {

@@ -1,0 +1,452 @@
+//! Flying batches of episodes: draws up, spans of steps, outcomes down.
+
+use super::GpuError;
+use super::buffers::{Buffers, batch, span_stride, storage_limit};
+use super::device::{Gpu, Use};
+use super::layout;
+use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::pipeline::{ENTRIES, Entry, Group, binding_layout, shape};
+use super::uniforms::setting;
+use crate::backend::Flown;
+use crate::campaign::Campaign;
+use crate::draw::{Episode, draw};
+use crate::model::Shown;
+use crate::model::episode::{AgentOutcome, Controller, ControllerKind, Model};
+use crate::synthesis::LoopGains;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+/// What a dispatch should take: short beside the seconds after which a display driver resets the device, long beside the
+/// cost of a submission.
+const DISPATCH: Duration = Duration::from_millis(100);
+/// Steps of the first dispatch, before anything is known of the device.
+const FIRST_STEPS: u32 = 4;
+/// Samples of a trace between two read-backs.
+const SAMPLES: u32 = 64;
+
+/// How the work is cut up. The result does not depend on it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Tuning {
+    /// Episodes per batch, as far as the adapter allows; else as many as fit.
+    pub batch: Option<u32>,
+    /// Steps per dispatch; else what takes about 0.1 s.
+    pub steps: Option<u32>,
+}
+
+/// Wall-clock times of a GPU's flying, s.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GpuTimes {
+    /// Shaders to machine code.
+    pub compile_s: f64,
+    /// Drawing episodes and sending them.
+    pub upload_s: f64,
+    /// The episode loop.
+    pub kernel_s: f64,
+    /// Receiving outcomes.
+    pub read_back_s: f64,
+}
+
+/// A campaign's controllers, ready to fly on a GPU.
+pub struct GpuFlyer<'g> {
+    gpu: &'g Gpu,
+    model: Model<f32>,
+    controllers: Vec<Controller<f32>>,
+    groups: Vec<Group>,
+    layout: wgpu::BindGroupLayout,
+    buffers: Buffers,
+    tuning: Tuning,
+    /// Steps of the next dispatch.
+    steps: u32,
+    times: GpuTimes,
+}
+
+/// What is told of an instant of a trace.
+pub struct Instantly<'a> {
+    /// Step number.
+    pub step: u32,
+    groups: &'a [Group],
+    /// Of each group, the words of this instant.
+    words: Vec<&'a [u32]>,
+}
+
+impl Instantly<'_> {
+    /// What every agent and channel of an episode shows, `[agent][channel]`; episodes are counted within the trace.
+    #[must_use]
+    pub fn agents(&self, episode: usize, controller: usize) -> Vec<Vec<Shown>> {
+        let groups = || {
+            let groups = self.groups.iter().zip(&self.words);
+            groups.filter(|(group, _)| group.controller == controller)
+        };
+        let team = groups().next().map_or(0, |(group, _)| group.shape.team);
+        (0..team)
+            .map(|agent| {
+                let channels = groups().flat_map(|(Group { shape, .. }, words)| {
+                    let (block, lane) = (episode / shape.lanes, episode % shape.lanes);
+                    let words = &words[block * SHOWN_WORDS * shape.workgroup()..];
+                    (0..shape.channels).map(move |channel| {
+                        layout::shown(words, shape, shape.place(channel, agent, lane))
+                    })
+                });
+                channels.collect()
+            })
+            .collect()
+    }
+}
+
+impl<'g> GpuFlyer<'g> {
+    /// Prepares a campaign: tabulates the references, rounds the gains, compiles the shaders, allocates the buffers; `gains`
+    /// as for [`crate::backend::cpu::Cpu::new`].
+    ///
+    /// # Errors
+    /// If the campaign does not fit the adapter, or its driver refuses the shaders.
+    pub fn new(
+        gpu: &'g Gpu,
+        campaign: &Campaign,
+        gains: &[Vec<LoopGains>],
+        tuning: Tuning,
+    ) -> Result<Self, GpuError> {
+        Self::rewritten(gpu, campaign, gains, tuning, &|text| text)
+    }
+
+    /// The same with changed shaders, to test that a test would notice.
+    ///
+    /// # Errors
+    /// As [`GpuFlyer::new`].
+    #[doc(hidden)]
+    pub fn rewritten(
+        gpu: &'g Gpu,
+        campaign: &Campaign,
+        gains: &[Vec<LoopGains>],
+        tuning: Tuning,
+        rewrite: &dyn Fn(String) -> String,
+    ) -> Result<Self, GpuError> {
+        let model: Model<f32> = Model::new(campaign);
+        let controllers: Vec<_> = gains.iter().map(|groups| Controller::new(groups)).collect();
+        let layout = binding_layout(gpu);
+        let start = Instant::now();
+        let mut groups: Vec<Group> = Vec::new();
+        for (controller, gains) in controllers.iter().enumerate() {
+            for (number, part) in model.parts.iter().enumerate() {
+                let shape = shape(gpu, campaign, part, gains.kind == ControllerKind::Ftc)?;
+                // The axes mostly share their shaders, and the PIDs do.
+                let known = groups.iter().find(|group| group.shape == shape);
+                let pipelines = match known {
+                    Some(group) => group.pipelines.clone(),
+                    None => gpu.compile(&rewrite(shape.text()), &layout, ENTRIES)?,
+                };
+                let bytes = setting(campaign, part, gains);
+                let setting = gpu.checked(
+                    || gpu.buffer(bytes.len().div_ceil(4), Use::Uniform),
+                    |error| gpu.driver_error(error),
+                )?;
+                gpu.write(&setting, 0, &bytes)?;
+                groups.push(Group {
+                    part: number,
+                    controller,
+                    shape,
+                    pipelines,
+                    setting,
+                });
+            }
+        }
+        let compile_s = start.elapsed().as_secs_f64();
+        let batch = batch(gpu, &groups, campaign.episodes, tuning);
+        let buffers = Buffers::largest(gpu, &layout, &groups, &model, batch)?;
+        let most = buffers.window_steps.max(1);
+        Ok(Self {
+            gpu,
+            steps: tuning.steps.unwrap_or(FIRST_STEPS).clamp(1, most),
+            model,
+            controllers,
+            groups,
+            layout,
+            buffers,
+            tuning,
+            times: GpuTimes {
+                compile_s,
+                ..GpuTimes::default()
+            },
+        })
+    }
+
+    /// Episodes of a batch, at most.
+    #[must_use]
+    pub fn batch(&self) -> u32 {
+        word(self.buffers.batch)
+    }
+
+    /// Times so far.
+    #[must_use]
+    pub fn times(&self) -> GpuTimes {
+        self.times
+    }
+
+    /// Flies a range of at most [`GpuFlyer::batch`] episodes under every controller, in order; `done` is told how many
+    /// episodes' worth of steps came to an end.
+    ///
+    /// # Errors
+    /// If the device fails; nothing of the batch is known then.
+    pub fn fly(
+        &mut self,
+        episodes: Range<u32>,
+        done: &(dyn Fn(u32) + Sync),
+    ) -> Result<Vec<Flown>, GpuError> {
+        let campaign = &self.model.campaign;
+        let start = Instant::now();
+        let episodes: Vec<Episode> = episodes
+            .into_par_iter()
+            .map(|episode| draw(campaign, episode))
+            .collect();
+        self.load(&episodes)?;
+        self.times.upload_s += start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let steps = self.model.campaign.time.steps;
+        let (mut step, mut told) = (0, 0);
+        while step < steps {
+            let until = step.saturating_add(self.steps).min(steps);
+            let began = Instant::now();
+            self.dispatch(episodes.len(), Entry::Advance, step..until, 0)?;
+            self.adapt(until - step, began.elapsed());
+            step = until;
+            let share = u64::from(word(episodes.len())) * u64::from(step) / u64::from(steps);
+            let share = u32::try_from(share).unwrap_or(u32::MAX);
+            done(share - told);
+            told = share;
+        }
+        self.times.kernel_s += start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let flown = self.flown(episodes)?;
+        self.times.read_back_s += start.elapsed().as_secs_f64();
+        Ok(flown)
+    }
+
+    /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended, `[episode]`.
+    /// The episodes may be any of the campaign's, as many as a batch holds.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn trace(
+        &mut self,
+        episodes: &[u32],
+        every: u32,
+        visit: &mut dyn FnMut(&Instantly<'_>),
+    ) -> Result<Vec<Flown>, GpuError> {
+        let campaign = &self.model.campaign;
+        let (steps, every) = (campaign.time.steps, every.max(1));
+        if episodes.is_empty() {
+            return Ok(Vec::new());
+        }
+        let episodes: Vec<Episode> = episodes
+            .iter()
+            .map(|&episode| draw(campaign, episode))
+            .collect();
+        let samples = word(self.samples(episodes.len()));
+        self.allocate(episodes.len(), samples as usize)?;
+        self.load(&episodes)?;
+        let mut instants = (0..steps).step_by(every as usize).chain([steps]).peekable();
+        while instants.peek().is_some() {
+            let instants: Vec<u32> = instants.by_ref().take(samples as usize).collect();
+            // Each instant is shown, then left behind: the state stands at the next one, or at the end.
+            for &step in &instants {
+                let next = step.saturating_add(every).min(steps);
+                let sample = (step - instants[0]).div_ceil(every);
+                self.run_sampled(episodes.len(), step, next, sample)?;
+            }
+            let read: Vec<Vec<u32>> = self
+                .groups
+                .iter()
+                .zip(&self.buffers.own)
+                .map(|(group, buffers)| {
+                    let words = instants.len() * group.invocations(episodes.len()) * SHOWN_WORDS;
+                    self.gpu.read(&buffers.output, &buffers.read_back, words)
+                })
+                .collect::<Result<_, _>>()?;
+            for (sample, &step) in instants.iter().enumerate() {
+                let words = self
+                    .groups
+                    .iter()
+                    .zip(&read)
+                    .map(|(group, read)| {
+                        &read[sample * group.invocations(episodes.len()) * SHOWN_WORDS..]
+                    })
+                    .collect();
+                visit(&Instantly {
+                    step,
+                    groups: &self.groups,
+                    words,
+                });
+            }
+        }
+        self.flown(episodes)
+    }
+
+    /// Replaces the buffers.
+    fn allocate(&mut self, batch: usize, samples: usize) -> Result<(), GpuError> {
+        let (groups, model) = (&self.groups, &self.model);
+        self.buffers = Buffers::new(self.gpu, &self.layout, groups, model, batch, samples)?;
+        Ok(())
+    }
+
+    /// Samples of so many episodes that fit the outputs.
+    fn samples(&self, episodes: usize) -> usize {
+        let most = self.groups.iter().map(|group| {
+            let limit = storage_limit(self.gpu) / 4;
+            usize::try_from(limit).unwrap_or(usize::MAX)
+                / (group.invocations(episodes) * SHOWN_WORDS)
+        });
+        most.min().unwrap_or(1).clamp(1, SAMPLES as usize)
+    }
+
+    /// Sends the draws of a batch and sets the initial state.
+    fn load(&mut self, episodes: &[Episode]) -> Result<(), GpuError> {
+        // A trace leaves smaller buffers than a batch needs.
+        if episodes.len() > self.buffers.batch {
+            self.allocate(episodes.len(), 0)?;
+        }
+        for (number, (part, buffers)) in self
+            .model
+            .parts
+            .iter()
+            .zip(&self.buffers.shared)
+            .enumerate()
+        {
+            let Some(group) = self.groups.iter().find(|group| group.part == number) else {
+                continue;
+            };
+            let (campaign, first) = (&self.model.campaign, part.channels.start);
+            let draws = layout::draws(campaign, &group.shape, first, episodes);
+            self.gpu.upload(&buffers.draws, &draws)?;
+        }
+        self.dispatch(episodes.len(), Entry::Start, 0..0, 0)
+    }
+
+    /// Reads how the episodes of a batch ended.
+    fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<Flown>, GpuError> {
+        let campaign = &self.model.campaign;
+        let steps = campaign.time.steps;
+        let blank = vec![
+            vec![AgentOutcome::blank(campaign.channels().len()); campaign.team];
+            self.controllers.len()
+        ];
+        self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
+        let mut flown: Vec<Flown> = episodes
+            .into_iter()
+            .map(|episode| Flown {
+                episode,
+                outcomes: blank.clone(),
+            })
+            .collect();
+        for (group, buffers) in self.groups.iter().zip(&self.buffers.own) {
+            let words = group.invocations(flown.len()) * OUTCOME_WORDS;
+            let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
+            layout::take_outcomes(
+                &self.model.campaign,
+                &group.shape,
+                self.model.parts[group.part].channels.start,
+                &words,
+                flown
+                    .iter_mut()
+                    .map(|flown| (flown.episode.index, &mut flown.outcomes[group.controller])),
+            )
+            .map_err(|error| self.gpu.driver_error(error))?;
+        }
+        Ok(flown)
+    }
+
+    /// Chooses the steps of the next dispatch by the time that the last one took.
+    fn adapt(&mut self, steps: u32, took: Duration) {
+        if self.tuning.steps.is_some() {
+            return;
+        }
+        let per_step = took.as_secs_f64() / f64::from(steps);
+        let wanted = DISPATCH.as_secs_f64() / per_step;
+        // A single measurement may be off: no jumps.
+        let most = f64::from(self.steps.saturating_mul(4).min(self.buffers.window_steps));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to the steps of a window"
+        )]
+        let wanted = wanted.clamp(1.0, most.max(1.0)) as u32;
+        self.steps = wanted;
+    }
+
+    /// Dispatches an instant of a trace: what it shows, then the steps to the next one.
+    fn run_sampled(
+        &mut self,
+        episodes: usize,
+        step: u32,
+        next: u32,
+        sample: u32,
+    ) -> Result<(), GpuError> {
+        self.dispatch(episodes, Entry::Show, step..step, sample)?;
+        let mut first = step;
+        while first < next {
+            let until = first.saturating_add(self.steps).min(next);
+            let began = Instant::now();
+            self.dispatch(episodes, Entry::Advance, first..until, 0)?;
+            self.adapt(until - first, began.elapsed());
+            first = until;
+        }
+        Ok(())
+    }
+
+    /// Dispatches an entry point of every group over a span of steps, and waits.
+    fn dispatch(
+        &mut self,
+        episodes: usize,
+        entry: Entry,
+        span: Range<u32>,
+        sample: u32,
+    ) -> Result<(), GpuError> {
+        if matches!(entry, Entry::Start | Entry::Advance | Entry::Show) {
+            self.cover(&span)?;
+        }
+        let stride = span_stride(self.gpu);
+        let mut spans = vec![0; stride * self.groups.len()];
+        for (group, bytes) in self.groups.iter().zip(spans.chunks_mut(stride)) {
+            let span = Span {
+                first: span.start,
+                until: span.end,
+                table_first: 2 * span.start.saturating_sub(self.buffers.window.start),
+                output_first: sample * word(group.invocations(episodes) * SHOWN_WORDS),
+            };
+            bytes[..size_of::<Span>()].copy_from_slice(bytemuck::bytes_of(&span));
+        }
+        self.gpu.write(&self.buffers.spans, 0, &spans)?;
+        self.gpu.submit(|encoder| {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for (k, (group, buffers)) in self.groups.iter().zip(&self.buffers.own).enumerate() {
+                pass.set_pipeline(&group.pipelines[entry as usize]);
+                pass.set_bind_group(0, &buffers.bindings, &[word(k * stride)]);
+                pass.dispatch_workgroups(word(episodes.div_ceil(group.shape.lanes)), 1, 1);
+            }
+        })
+    }
+
+    /// Sees to it that the references of a span are on the device.
+    fn cover(&mut self, span: &Range<u32>) -> Result<(), GpuError> {
+        let window = &self.buffers.window;
+        if !window.is_empty() && window.start <= span.start && span.end <= window.end {
+            return Ok(());
+        }
+        let steps = self.model.campaign.time.steps;
+        let end = span
+            .start
+            .saturating_add(self.buffers.window_steps)
+            .min(steps);
+        for (part, buffers) in self.model.parts.iter().zip(&self.buffers.shared) {
+            let stride = self.model.campaign.team * part.channels.len() * part.rows;
+            let rows =
+                &part.table[2 * span.start as usize * stride..(2 * end as usize + 1) * stride];
+            self.gpu.write(&buffers.table, 0, rows)?;
+        }
+        self.buffers.window = span.start..end;
+        Ok(())
+    }
+}

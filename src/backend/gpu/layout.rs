@@ -1,0 +1,380 @@
+//! What travels to and from the shaders of a group of channels, as 32-bit words: the draws, the outcomes.
+
+use super::shape::Shape;
+use super::signals::{LISTS, Lists, bursts, switches, waves};
+use crate::campaign::{Campaign, FaultKind, Time};
+use crate::draw::Episode;
+use crate::model::Shown;
+use crate::model::episode::{AgentOutcome, PlantKind};
+use crate::model::exogenous::Wave;
+use crate::model::inputs::{Block, Condition, Entries};
+use crate::model::metric::{ChannelOutcome, Metrics};
+use crate::model::team::Ending;
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+
+/// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums, episode.
+pub(crate) const OUTCOME_WORDS: usize = 13;
+/// Words of what a channel shows: the fields of [`Shown`].
+pub(crate) const SHOWN_WORDS: usize = 10;
+/// A step that never comes.
+pub(crate) const NEVER: u32 = u32::MAX;
+/// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance, scale of
+/// the ground's reaction.
+const FIXED_WORDS: usize = 9;
+/// Words of a switch: onset, end, 1 / ramp, value.
+const SWITCH_WORDS: usize = 4;
+/// Words of a turbulence: keep, cross, noise (three), output (two), states at the start (two).
+const TURBULENCE_WORDS: usize = 9;
+/// Words of a vortex: force, 1 / radius, 2 / length.
+const VORTEX_WORDS: usize = 3;
+/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held, the commands
+/// that were sent and that arrived last.
+const MEMORY_WORDS: usize = 6;
+
+/// Where the words of a channel are, in its draw and in its state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Words<'l> {
+    lists: &'l Lists,
+    states: usize,
+}
+
+impl<'l> Words<'l> {
+    pub(crate) fn new(lists: &'l Lists, states: usize) -> Self {
+        Self { lists, states }
+    }
+
+    /// Words of a draw.
+    pub(crate) fn drawn(self) -> usize {
+        let [bursts, waves, rings] = self.lists.groups();
+        let turbulences = self.lists.turbulence_entries.len();
+        FIXED_WORDS
+            + SWITCH_WORDS * self.lists.switches()
+            + 2 * bursts
+            + 3 * waves
+            + rings
+            + TURBULENCE_WORDS * turbulences
+            + VORTEX_WORDS * self.lists.vortices
+    }
+
+    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise, states
+    /// of turbulence, memory and rings.
+    pub(crate) fn stored(self) -> usize {
+        self.rings_stored() + self.lists.ring_words()
+    }
+
+    fn memory(self) -> usize {
+        let noises = self.lists.noise_entries.len();
+        17 + self.states + 4 * noises + 2 * self.lists.turbulence_entries.len()
+    }
+
+    fn rings_stored(self) -> usize {
+        self.memory()
+            + if self.lists.remembers {
+                MEMORY_WORDS
+            } else {
+                0
+            }
+    }
+
+    /// Every place and count by its name in the shaders.
+    pub(crate) fn named(self) -> Vec<(String, usize)> {
+        let lists = self.lists;
+        let [n_bursts, n_waves, n_rings] = lists.groups();
+        let bursts = FIXED_WORDS + SWITCH_WORDS * lists.switches();
+        let waves = bursts + 2 * n_bursts;
+        let rings = waves + 3 * n_waves;
+        let noises = lists.noise_entries.len();
+        let turbulences = lists.turbulence_entries.len();
+        let mut named: Vec<(String, usize)> = [
+            ("EPISODE", 0),
+            ("INTEGRAL", 1),
+            ("ERROR", 2),
+            ("ERROR_RATE", 3),
+            ("INVERSE_INERTIA", 4),
+            ("KAPPA", 5),
+            ("FIRST_FAULT", 6),
+            ("CONSTANT", 7),
+            ("GROUND", 8),
+            ("SWITCHES", FIXED_WORDS),
+            ("BURSTS", bursts),
+            ("WAVES", waves),
+            ("RINGS", rings),
+            ("TURBULENCES", rings + n_rings),
+            ("VORTICES", rings + n_rings + TURBULENCE_WORDS * turbulences),
+            ("DRAWN_WORDS", self.drawn()),
+            ("N_SWITCHES", lists.switches()),
+            ("N_WAVES", n_waves),
+            ("N_TURBULENCES", turbulences),
+            ("N_VORTICES", lists.vortices),
+            ("FAILED", 0),
+            ("OUTSIDE", 1),
+            ("OUTSIDE_BEFORE_FAULT", 2),
+            ("LARGEST", 3),
+            ("LARGEST_COMMAND", 4),
+            ("RECENT", 5),
+            ("TOTALS", 11),
+            ("CHANNEL", 17),
+            ("SAMPLES", 17 + self.states),
+            ("TURBULENCE_STATE", 17 + self.states + 4 * noises),
+            ("MEMORY", self.memory()),
+            ("RINGS_STORED", self.rings_stored()),
+            ("STORED_WORDS", self.stored()),
+            ("RING_STEPS", lists.ring_steps),
+            ("HOLD_STEPS", lists.hold_steps as usize),
+        ]
+        .map(|(name, value)| (name.to_string(), value))
+        .to_vec();
+        for (list, (name, count)) in LISTS.iter().zip(lists.counts).enumerate() {
+            named.push(((*name).to_string(), lists.first(list)));
+            named.push((format!("N_{name}"), count));
+        }
+        named
+    }
+}
+
+/// Twin of `Span` in shaders/episode.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Span {
+    pub(crate) first: u32,
+    pub(crate) until: u32,
+    pub(crate) table_first: u32,
+    pub(crate) output_first: u32,
+}
+
+/// The lists of a group's channels.
+pub(crate) fn lists<const NC: usize>(
+    campaign: &Campaign,
+    first: usize,
+    episode: &Episode,
+) -> Lists {
+    let condition: Condition<f32, NC> = Block {
+        campaign,
+        episodes: std::slice::from_ref(episode),
+    }
+    .condition(0, first, Entries::Possible);
+    Lists::of(
+        &condition.signals,
+        condition.vortices.len(),
+        ring_steps(campaign),
+    )
+}
+
+/// The longest past that a campaign's channels may have to remember, in steps.
+fn ring_steps(campaign: &Campaign) -> usize {
+    let of_faults = campaign
+        .faults
+        .iter()
+        .filter(|fault| matches!(fault.kind, FaultKind::Delay | FaultKind::Replay));
+    let lengths = of_faults.map(|fault| &fault.parameters[0]);
+    let longest_s = lengths
+        .chain(&campaign.control.delay_s)
+        .flat_map(|length_s| &length_s.distributions)
+        .map(|length_s| length_s.support().1)
+        .reduce(f64::max);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "validated to be small"
+    )]
+    longest_s.map_or(1, |longest_s| campaign.time.whole_steps(longest_s) as usize)
+}
+
+/// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up with
+/// its last episode.
+pub(crate) fn draws(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    episodes: &[Episode],
+) -> Vec<u32> {
+    match shape.plant {
+        PlantKind::Axis => draws_of::<1>(campaign, shape, first, episodes),
+        PlantKind::Translation | PlantKind::Attitude => {
+            draws_of::<3>(campaign, shape, first, episodes)
+        }
+        PlantKind::Thrust | PlantKind::Leg => draws_of::<6>(campaign, shape, first, episodes),
+    }
+}
+
+fn draws_of<const NC: usize>(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    episodes: &[Episode],
+) -> Vec<u32> {
+    let (workgroup, words) = (shape.workgroup(), shape.words().drawn());
+    let blocks = episodes.len().div_ceil(shape.lanes);
+    let mut all = vec![0; blocks * words * workgroup];
+    all.par_chunks_mut(words * workgroup)
+        .zip(episodes.par_chunks(shape.lanes))
+        .for_each(|(out, episodes)| {
+            for lane in 0..shape.lanes {
+                let episode = &episodes[lane.min(episodes.len() - 1)];
+                let block = Block {
+                    campaign,
+                    episodes: std::slice::from_ref(episode),
+                };
+                for agent in 0..shape.team {
+                    let condition: Condition<f32, NC> =
+                        block.condition(agent, first, Entries::Possible);
+                    for channel in 0..NC {
+                        let place = shape.place(channel, agent, lane);
+                        let drawn = drawn(episode.index, &condition, channel);
+                        for (k, word) in drawn.into_iter().enumerate() {
+                            out[k * workgroup + place] = word;
+                        }
+                    }
+                }
+            }
+        });
+    all
+}
+
+/// The words of one channel's draw, in the order of [`Words::named`].
+pub(crate) fn drawn<const NC: usize>(
+    episode: u32,
+    condition: &Condition<f32, NC>,
+    c: usize,
+) -> Vec<u32> {
+    let signals = &condition.signals;
+    let [integral, error, rate] = condition.initial[c].map(f32::to_bits);
+    let mut words = vec![
+        episode,
+        integral,
+        error,
+        rate,
+        signals.first_inverse_inertia[c].to_bits(),
+        condition.kappa.to_bits(),
+        step(condition.first_fault),
+        signals.constant[c].to_bits(),
+        signals.ground[c].to_bits(),
+    ];
+    for switch in switches(signals, c).into_iter().flatten() {
+        let (ramp, value) = (switch.inverse_ramp.to_bits(), switch.value.to_bits());
+        words.extend([step(switch.onset), step(switch.end), ramp, value]);
+    }
+    for burst in bursts(signals) {
+        words.extend([burst.slot_steps[c][0], burst.threshold[c][0]]);
+    }
+    for wave in waves(signals) {
+        let Wave {
+            inverse_smoothing,
+            phase,
+            advance,
+            ..
+        } = wave[c];
+        words.extend([inverse_smoothing.to_bits(), phase, advance]);
+    }
+    words.extend(signals.command_rings.iter().map(|ring| ring.length[c][0]));
+    words.extend(signals.sensor_rings.iter().map(|ring| ring.length[c][0]));
+    for turbulence in &signals.turbulences {
+        let filter = &turbulence.filter[c];
+        let fixed = [filter.keep, filter.cross].into_iter();
+        let numbers = fixed.chain(filter.noise).chain(filter.output);
+        words.extend(numbers.chain(turbulence.state[c]).map(f32::to_bits));
+    }
+    for vortex in &condition.vortices {
+        let numbers = [vortex.force, vortex.inverse_radius, vortex.inverse_length];
+        words.extend(numbers.map(f32::to_bits));
+    }
+    words
+}
+
+/// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into the
+/// outcomes of each episode's agents.
+///
+/// # Errors
+/// If the words are not of these episodes: a dispatch was not carried out, or a buffer holds something else.
+pub(crate) fn take_outcomes<'a>(
+    campaign: &Campaign,
+    shape: &Shape,
+    first: usize,
+    words: &[u32],
+    outcomes: impl Iterator<Item = (u32, &'a mut Vec<AgentOutcome>)>,
+) -> Result<(), String> {
+    let workgroup = shape.workgroup();
+    let outcomes: Vec<_> = outcomes.collect();
+    let each = outcomes.into_par_iter().enumerate();
+    each.try_for_each(|(index, (episode, agents))| {
+        let (block, lane) = (index / shape.lanes, index % shape.lanes);
+        let words = &words[block * OUTCOME_WORDS * workgroup..];
+        for (agent, outcome) in agents.iter_mut().enumerate() {
+            for channel in 0..shape.channels {
+                let place = shape.place(channel, agent, lane);
+                let word = |k: usize| words[k * workgroup + place];
+                if word(12) != episode {
+                    return Err(format!(
+                        "the outcome of episode {} stands in the place of episode {episode}",
+                        word(12)
+                    ));
+                }
+                let (ending, metrics) = ended(campaign.time, word);
+                outcome.take(first + channel, ending, metrics);
+            }
+        }
+        Ok(())
+    })
+}
+
+/// How a channel ended, from its outcome words.
+fn ended(time: Time, word: impl Fn(usize) -> u32) -> (Ending, ChannelOutcome) {
+    let number = |k: usize| f32::from_bits(word(k));
+    let ending = Ending {
+        failed_step: Some(word(0)).filter(|&step| step != NEVER),
+        finite: word(1) != 0,
+    };
+    let metrics = Metrics::kept(
+        std::array::from_fn(|k| number(6 + k)),
+        [number(4), number(5)],
+        [last_step(word(2)), last_step(word(3))],
+    );
+    let settled = time.steps.saturating_sub(time.settle_step);
+    let mut taken = [ChannelOutcome::default()];
+    metrics.outcomes(time.steps, settled, time.step_s, &mut taken);
+    (ending, taken[0])
+}
+
+/// What a channel shows, from its words `[word][channel][agent][episode]`.
+pub(crate) fn shown(words: &[u32], shape: &Shape, place: usize) -> Shown {
+    let number = |k: usize| f64::from(f32::from_bits(words[k * shape.workgroup() + place]));
+    let [r, x, e, e_rate, e_hat, f1, f1_hat, f2, f2_hat, u] = std::array::from_fn(number);
+    Shown {
+        r,
+        x,
+        e,
+        e_rate,
+        e_hat,
+        f1,
+        f1_hat,
+        f2,
+        f2_hat,
+        u,
+    }
+}
+
+/// A step number as the shaders count it.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a step number, or infinity"
+)]
+fn step(step: f32) -> u32 {
+    if step.is_finite() { step as u32 } else { NEVER }
+}
+
+/// A last step as the lanes count it: -1 if there is none.
+#[expect(
+    clippy::cast_possible_wrap,
+    clippy::cast_precision_loss,
+    reason = "a step number below 2^24, or -1"
+)]
+fn last_step(word: u32) -> f32 {
+    word as i32 as f32
+}
+
+/// A small count as a word.
+pub(crate) fn word(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,214 @@
+//! The constants of a group of channels under a controller, as its shaders read them: `Setting` in shaders/episode.wgsl.
+
+use super::layout::word;
+use crate::agent::{Agent, Biped, HEIGHT};
+use crate::campaign::Campaign;
+use crate::model::controller::ChannelGains;
+use crate::model::episode::{Controller, Part, PlantKind};
+use crate::model::integrator::Step;
+use crate::model::metric::Limits;
+use crate::model::plant::biped::Leg;
+use crate::model::plant::leg::{LEG_JOINTS, LegWords};
+use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
+use crate::random::philox::key;
+use bytemuck::{Pod, Zeroable};
+
+/// Twin of `Uav` in shaders/plant_uav.wgsl.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct UavWords {
+    pub(crate) mass: f32,
+    pub(crate) inverse_mass: f32,
+    pub(crate) drag: f32,
+    pub(crate) gravity: f32,
+    pub(crate) inertia: [f32; 4],
+    pub(crate) inverse_inertia: [f32; 4],
+    pub(crate) gyro: [f32; 4],
+    pub(crate) angular_drag: f32,
+    pub(crate) filter_rad_s: f32,
+    pub(crate) max_thrust: f32,
+    pub(crate) max_torque: f32,
+    pub(crate) max_tilt: f32,
+    pub(crate) unused: [f32; 3],
+}
+
+/// Twin of `Leg` in shaders/plant_biped.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LegPlantWords {
+    pub(crate) model: LegWords,
+    pub(crate) max_torque: [f32; 8],
+}
+
+/// Twin of `ChannelGains` in shaders/controller.wgsl.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct GainsWords {
+    pub(crate) feedback: [f32; 8],
+    pub(crate) injection: [[f32; 4]; 7],
+    pub(crate) smoothing: [f32; 4],
+    pub(crate) sensor_fault_input: [f32; 4],
+}
+
+/// Twin of `Setting` in shaders/episode.wgsl, up to the constants of its plant and its arrays: limits, gains.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SettingHead {
+    pub(crate) seed: [u32; 2],
+    pub(crate) settle_step: u32,
+    pub(crate) first_channel: u32,
+    pub(crate) h: [f32; 4],
+}
+
+fn four<const N: usize>(values: [f32; N]) -> [f32; 4] {
+    std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
+}
+
+impl From<Axis<f32>> for UavWords {
+    fn from(axis: Axis<f32>) -> Self {
+        Self {
+            mass: axis.mass,
+            drag: axis.drag,
+            gravity: axis.gravity,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<Translation<f32>> for UavWords {
+    fn from(translation: Translation<f32>) -> Self {
+        // Gravity is that of the height; the shaders know which axis it pulls along.
+        Self::from(translation.axes[HEIGHT])
+    }
+}
+
+impl From<Attitude<f32>> for UavWords {
+    fn from(attitude: Attitude<f32>) -> Self {
+        Self {
+            inertia: four(attitude.inertia),
+            gyro: four(attitude.gyro),
+            angular_drag: attitude.drag,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<Thrust<f32>> for UavWords {
+    fn from(thrust: Thrust<f32>) -> Self {
+        Self {
+            mass: thrust.mass,
+            inverse_mass: thrust.inverse_mass,
+            drag: thrust.drag,
+            gravity: thrust.gravity,
+            inverse_inertia: four(thrust.inverse_inertia),
+            filter_rad_s: thrust.filter,
+            max_thrust: thrust.max_thrust,
+            max_torque: thrust.max_torque,
+            max_tilt: thrust.max_tilt,
+            ..Self::from(thrust.attitude)
+        }
+    }
+}
+
+/// A plant's constants as its shaders read them.
+pub(crate) trait PlantWords {
+    /// The bytes of `Plant` in the shaders.
+    fn bytes(&self) -> Vec<u8>;
+}
+
+impl PlantWords for Axis<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Translation<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Attitude<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl PlantWords for Thrust<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+    }
+}
+
+impl<const CUT: bool> PlantWords for Leg<f32, CUT> {
+    fn bytes(&self) -> Vec<u8> {
+        let mut max_torque = [0.0; 8];
+        max_torque[..LEG_JOINTS].copy_from_slice(&self.max_torque);
+        let words = LegPlantWords {
+            model: LegWords::from(&self.model),
+            max_torque,
+        };
+        bytemuck::bytes_of(&words).to_vec()
+    }
+}
+
+impl From<&ChannelGains<f32>> for GainsWords {
+    fn from(gains: &ChannelGains<f32>) -> Self {
+        Self {
+            feedback: std::array::from_fn(|k| gains.feedback.get(k).copied().unwrap_or_default()),
+            injection: gains.injection.map(four),
+            smoothing: four(gains.smoothing),
+            sensor_fault_input: four(gains.sensor_fault_input),
+        }
+    }
+}
+
+/// The bytes of a group's `Setting` under a controller.
+pub(crate) fn setting(
+    campaign: &Campaign,
+    part: &Part<f32>,
+    controller: &Controller<f32>,
+) -> Vec<u8> {
+    let h = Step::<f32>::new(campaign.time.step_s);
+    let head = SettingHead {
+        seed: key(campaign.seed),
+        settle_step: campaign.time.settle_step,
+        first_channel: word(part.channels.start),
+        h: [h.sixth, h.third, h.half, h.whole],
+    };
+    let mut bytes = bytemuck::bytes_of(&head).to_vec();
+    bytes.extend(match &campaign.agent {
+        Agent::Uav(uav) => match part.plant {
+            PlantKind::Axis => Axis::new(uav, part.channels.start).bytes(),
+            PlantKind::Translation => Translation::new(uav).bytes(),
+            PlantKind::Attitude => Attitude::new(uav).bytes(),
+            _ => Thrust::new(uav).bytes(),
+        },
+        Agent::Biped(biped) => leg(biped, part).bytes(),
+    });
+    for channel in part.channels.clone() {
+        let verdict = &campaign.verdict;
+        let limits = Limits::<f32>::new(verdict.max_error[channel], verdict.settled_error[channel]);
+        bytes.extend(bytemuck::bytes_of(&[
+            limits.max_error,
+            limits.settled_error,
+            0.0,
+            0.0,
+        ]));
+    }
+    for (group, gains) in campaign.channel_groups().iter().zip(&controller.gains) {
+        if part
+            .channels
+            .clone()
+            .any(|channel| group.channels.contains(&channel))
+        {
+            bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
+        }
+    }
+    bytes
+}
+
+/// The leg that a part of a biped's episode is. Whether limits cut its commands is no matter of its constants.
+pub(crate) fn leg(biped: &Biped, part: &Part<f32>) -> Leg<f32, false> {
+    Leg::new(&biped.robot, part.channels.start / LEG_JOINTS)
+}

@@ -1,0 +1,136 @@
+//! What a campaign may do, but its writer has probably not meant: said before the flight, forbidden by nothing.
+
+use super::{ALL, Campaign, Distribution, Drawn, Fault, Requirement};
+use crate::reference::{AgentWalk, Reference, WaypointPath};
+use crate::statistics::LEVEL;
+use crate::statistics::{runs_needed, sequential_runs_needed};
+
+/// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached, faults that
+/// nobody has or that are gone before they have come.
+#[must_use]
+pub fn cautions(campaign: &Campaign) -> Vec<String> {
+    let requirements = campaign.requirements.iter().enumerate();
+    let unprovable = requirements.filter_map(|(index, own)| unprovable(campaign, index, own));
+    let faults = campaign.faults.iter().enumerate();
+    let unfinished =
+        faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
+    unprovable
+        .chain(unreached(campaign))
+        .chain(unfinished)
+        .collect()
+}
+
+/// A requirement that does not hold even if nothing fails.
+fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> Option<String> {
+    let Requirement {
+        controller,
+        stratum,
+        failure_rate_upper_95: limit,
+    } = requirement;
+    // That a rate is at most 1 needs no proof.
+    if *limit >= 1.0 {
+        return None;
+    }
+    let strata = &campaign.strata;
+    let place = strata.all().iter().position(|own| own.name == *stratum);
+    let (n, of_stratum) = match place {
+        Some(place) if &**stratum != ALL => (
+            strata.count(place, campaign.episodes),
+            format!(" of the stratum {stratum:?}"),
+        ),
+        _ => (u64::from(campaign.episodes), String::new()),
+    };
+    let needed = match campaign.stop {
+        Some(_) => sequential_runs_needed,
+        None => runs_needed,
+    };
+    let enough = needed(*limit, LEVEL, 0);
+    if enough.is_some_and(|enough| n >= enough) {
+        return None;
+    }
+    let episodes = if n == 1 { "episode" } else { "episodes" };
+    let remedy = match (enough, place) {
+        (Some(enough), Some(place)) if !of_stratum.is_empty() => format!(
+            "fly at least {} episodes, {enough} of them there",
+            strata.episodes_for(place, enough)
+        ),
+        (Some(enough), _) => format!("fly at least {enough}"),
+        (None, _) => "no number of episodes does".to_string(),
+    };
+    Some(format!(
+        "require[{index}].failure_rate_upper_95 = {limit}: {n} {episodes}{of_stratum} cannot prove it, even if {controller:?} fails \
+         in none; {remedy}"
+    ))
+}
+
+/// When somebody sets out, how long it moves, and how long all takes that is planned, s.
+type Way = [f64; 3];
+
+/// The walk or path that moves longest beyond the end of an episode. Who only stands has arrived.
+fn unreached(campaign: &Campaign) -> Option<String> {
+    let (what, ways): (_, Vec<Way>) = match &campaign.reference {
+        Reference::Sinusoid(_) => return None,
+        Reference::Waypoints(paths) => {
+            let way = |path: &WaypointPath| [0.0, path.duration_s(), path.duration_s()];
+            ("path", paths.iter().map(way).collect())
+        }
+        Reference::Walk(walks) => {
+            let way = |AgentWalk { walk, start_s }: &AgentWalk| {
+                let takes_s = walk.duration_s();
+                [*start_s, takes_s - walk.gait.standing_after_s, takes_s]
+            };
+            ("walk", walks.iter().map(way).collect())
+        }
+    };
+    let ends = ways.iter().map(|[start_s, moves_s, _]| start_s + moves_s);
+    let (agent, end_s) = ends.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let episode_s = campaign.time.shown_s(campaign.time.steps);
+    // A step is as near as an end can be met.
+    if end_s <= episode_s + campaign.time.step_s {
+        return None;
+    }
+    let [start_s, _, takes_s] = ways[agent];
+    let whose = match ways.len() {
+        1 => String::new(),
+        _ => format!(" of agent {agent}"),
+    };
+    let begins = if start_s == 0.0 {
+        String::new()
+    } else {
+        format!(" begins at {start_s} s and")
+    };
+    Some(format!(
+        "reference: the {what}{whose}{begins} takes {} s, the episode {episode_s} s; its end is not reached",
+        // Not shorter than it is.
+        (100.0 * takes_s).ceil() / 100.0
+    ))
+}
+
+/// A fault that nobody has.
+fn absent(index: usize, fault: &Fault) -> Option<String> {
+    let never = fault.probability.iter().all(|own| *own == 0.0);
+    never.then(|| {
+        format!(
+            "fault[{index}].probability = 0: nobody ever has {}",
+            fault.name
+        )
+    })
+}
+
+/// A fault that is never there as a whole, as it ends before it has come.
+fn unfinished(index: usize, fault: &Fault) -> Option<String> {
+    let ends = |drawn: &Drawn| {
+        let supports = drawn.distributions.iter().map(Distribution::support);
+        supports.fold([f64::INFINITY, 0.0], |[low, high], own| {
+            [f64::min(low, own.0), f64::max(high, own.1)]
+        })
+    };
+    let [comes_s, _] = ends(fault.ramp_s.as_ref()?);
+    let [_, stays_s] = ends(fault.duration_s.as_ref()?);
+    (comes_s > stays_s).then(|| {
+        format!(
+            "fault[{index}].ramp_s: {} takes at least {comes_s} s to come and stays at most {stays_s} s; it never comes as a whole",
+            fault.name
+        )
+    })
+}

@@ -1,0 +1,329 @@
+//! The commands.
+
+mod arguments;
+mod completions;
+mod console;
+pub(crate) mod exit;
+mod junit;
+mod progress;
+
+pub(crate) use arguments::Arguments;
+pub(crate) use console::print_error;
+
+use arguments::{
+    BackendChoice, CheckArguments, Command, DevicesArguments, Overrides, PlanArguments,
+    PrecisionChoice, ReplayArguments, RunArguments, SimdChoice, SynthesizeArguments,
+};
+use completions::completions;
+use console::{print, print_json, print_note};
+use exit::{Code, Failure};
+use progress::Shown;
+use std::collections::BTreeMap;
+use std::path::Path;
+use urts_mc::backend::cpu::{Precision, Simd};
+use urts_mc::backend::gpu::{Tuning, adapters};
+use urts_mc::campaign::Campaign;
+use urts_mc::campaign::lints::cautions;
+use urts_mc::controllers::GainSet;
+use urts_mc::report::paper::{claim_dir, paper};
+use urts_mc::report::problems::{shortcoming, unmet};
+use urts_mc::report::terminal;
+use urts_mc::report::{report, trace};
+use urts_mc::run::directory::{OutputDir, OutputFile};
+use urts_mc::run::replay::replay;
+use urts_mc::run::replay_files::ReplayFiles;
+use urts_mc::run::{Extras, Findings, run};
+use urts_mc::simulation::{Backend, Settings};
+use urts_mc::synthesis::{Preset, synthesize};
+
+/// Carries out a command.
+///
+/// # Errors
+/// Whatever stops it, with the exit code that it means.
+pub(crate) fn execute(arguments: Arguments) -> Result<Code, Failure> {
+    let elsewhere = elsewhere(&arguments.command);
+    carry_out(arguments.command).map_err(|failure| failure.of_place(elsewhere))
+}
+
+/// What to do where a command cannot write what it has to.
+fn elsewhere(command: &Command) -> &'static str {
+    match command {
+        Command::Report { .. } => {
+            "a report stands beside the tables of its run: make their directory writable, or copy it"
+        }
+        Command::Replay(_) => "give another file with --out",
+        _ => "give another directory with --out",
+    }
+}
+
+fn carry_out(command: Command) -> Result<Code, Failure> {
+    match command {
+        Command::Run(arguments) => run_command(&arguments),
+        Command::Check(arguments) => check_command(&arguments),
+        Command::Synthesize(arguments) => synthesize_command(&arguments),
+        Command::Replay(arguments) => replay_command(&arguments),
+        Command::Report { run } => {
+            report(&run)?;
+            print(&terminal::report(&run))?;
+            Ok(Code::Done)
+        }
+        Command::Paper { out, overwrite } => {
+            let claims = paper(&claim_dir(&out, overwrite)?)?;
+            print(&terminal::paper(&claims, &out))?;
+            Ok(Code::Done)
+        }
+        Command::Plan(arguments) => plan_command(&arguments),
+        Command::Devices(arguments) => devices_command(&arguments),
+        Command::Schema => {
+            print_json(&Campaign::schema())?;
+            Ok(Code::Done)
+        }
+        Command::Completions { shell } => {
+            print(&completions(shell))?;
+            Ok(Code::Done)
+        }
+    }
+}
+
+impl Overrides {
+    fn load(&self) -> Result<Campaign, Failure> {
+        let mut campaign = Campaign::load(&self.campaign)?;
+        if let Some(episodes) = self.episodes {
+            campaign.set_episodes(episodes)?;
+        }
+        campaign.seed = self.seed.unwrap_or(campaign.seed);
+        Ok(campaign)
+    }
+}
+
+fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
+    let campaign = arguments.overrides.load();
+    let of_campaign = || Some(Path::new("reports").join(&campaign.as_ref().ok()?.name));
+    let out = arguments.out.clone().or_else(of_campaign);
+    // Before anything else that may go wrong: what an earlier run left must not tell of this one.
+    let report = arguments.junit_file(out.as_deref())?;
+    let file = &arguments.overrides.campaign;
+    let name = match &campaign {
+        Ok(campaign) => campaign.name.clone(),
+        Err(_) => file.file_stem().unwrap_or_default().display().to_string(),
+    };
+    let flown = campaign.and_then(|campaign| {
+        // A campaign that is read has a directory.
+        let out = out.unwrap_or_default();
+        let findings = arguments.fly(&campaign, &out)?;
+        Ok((campaign, findings, out))
+    });
+    let reported = match (&report, &flown) {
+        (None, _) => Ok(()),
+        (Some(report), Ok((_, findings, out))) => report.write(&findings.manifest, out),
+        (Some(report), Err(failure)) => report.write_error(&name, failure),
+    };
+    let (campaign, findings, out) = flown?;
+    if arguments.json {
+        print_json(&terminal::findings_json(&findings))?;
+    } else if !arguments.quiet {
+        print(&terminal::findings(&campaign, &findings, &out))?;
+    }
+    reported?;
+    if let Some(error) = shortcoming(&findings.manifest, &out) {
+        return Err(Failure::new(Code::Other, error));
+    }
+    match unmet(&findings.manifest) {
+        None => Ok(Code::Done),
+        Some(unmet) => Err(Failure::new(Code::Unmet, unmet)),
+    }
+}
+
+impl RunArguments {
+    /// Flies a campaign into a directory.
+    fn fly(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
+        let settings = self.settings()?;
+        let out = OutputDir::claim(out, campaign, self.overwrite)?;
+        let extras = Extras {
+            csv: self.csv,
+            cross_check: self.cross_check,
+        };
+        if !self.quiet {
+            cautions(campaign).iter().for_each(|said| print_note(said));
+        }
+        let shown = Shown::of_run(campaign, self.quiet);
+        let findings = run(campaign, &settings, &out, extras, &|at| {
+            shown.tell(at);
+        })?;
+        report(out.path())?;
+        Ok(findings)
+    }
+
+    /// The settings; options that contradict each other are refused.
+    fn settings(&self) -> Result<Settings, Failure> {
+        let precision = match self.precision {
+            PrecisionChoice::F32 => Precision::F32,
+            PrecisionChoice::F64 => Precision::F64,
+        };
+        let simd = match self.simd {
+            SimdChoice::Auto => None,
+            SimdChoice::Scalar => Some(Simd::Scalar),
+            SimdChoice::Avx2 => Some(Simd::Avx2),
+            SimdChoice::Avx512 => Some(Simd::Avx512),
+        };
+        if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
+            let name = format!("{simd:?}").to_lowercase();
+            return Err(Failure::usage(format!(
+                "--simd {name}: this processor lacks it; use auto"
+            )));
+        }
+        let backend = match (self.backend, &self.adapter) {
+            (BackendChoice::Gpu, adapter) => Backend::Gpu {
+                adapter: adapter.clone(),
+            },
+            (_, Some(name)) => {
+                return Err(Failure::usage(format!(
+                    "--adapter {name}: only a GPU has adapters; add --backend gpu"
+                )));
+            }
+            (BackendChoice::Auto, None) => Backend::Auto,
+            (BackendChoice::Cpu, None) => Backend::Cpu,
+        };
+        if self.backend == BackendChoice::Gpu && precision == Precision::F64 {
+            return Err(Failure::usage(
+                "--precision f64: the shaders are in single precision; use --backend cpu".into(),
+            ));
+        }
+        if self.backend == BackendChoice::Gpu && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
+            ));
+        }
+        if precision == Precision::F64 && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out episodes in single precision; leave it out, or use --precision f32".into(),
+            ));
+        }
+        if precision == Precision::F64 && self.cross_check.is_some_and(|count| count > 0) {
+            return Err(Failure::usage(
+                "--cross-check: compares with f64, which this run is; leave it out".into(),
+            ));
+        }
+        Ok(Settings {
+            backend,
+            precision,
+            simd,
+            threads: usize::from(self.threads),
+            tuning: Tuning::default(),
+        })
+    }
+}
+
+fn plan_command(arguments: &PlanArguments) -> Result<Code, Failure> {
+    let PlanArguments {
+        failure_rate,
+        confidence,
+        failures,
+        json,
+    } = *arguments;
+    if json {
+        print_json(&terminal::runs_json(failure_rate, confidence, failures))?;
+    } else {
+        print(&terminal::runs(failure_rate, confidence, failures))?;
+    }
+    Ok(Code::Done)
+}
+
+fn devices_command(arguments: &DevicesArguments) -> Result<Code, Failure> {
+    let adapters = adapters();
+    if arguments.json {
+        print_json(&adapters)?;
+    } else {
+        print(&terminal::devices(&adapters, Simd::widest()))?;
+    }
+    Ok(Code::Done)
+}
+
+fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
+    let campaign = arguments.overrides.load()?;
+    let shown = Shown::of_work("synthesizing gains", arguments.quiet);
+    let gains = GainSet::obtain(&campaign);
+    drop(shown);
+    let gains = gains?;
+    if arguments.json {
+        print_json(&terminal::plan_json(&campaign))?;
+    } else if !arguments.quiet {
+        print(&terminal::plan(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
+    let Some(path) = &arguments.campaign else {
+        return synthesize_preset(arguments);
+    };
+    let campaign = Campaign::load(path)?;
+    let shown = Shown::of_work("synthesizing gains", false);
+    let gains = GainSet::obtain(&campaign);
+    drop(shown);
+    let gains = gains?;
+    if arguments.json {
+        print_json(&gains.to_file(&campaign))?;
+    } else {
+        print(&terminal::gains(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
+    let preset = Preset::ALL
+        .into_iter()
+        .find(|known| Some(known.name()) == arguments.preset.as_deref());
+    let shown = Shown::of_work("synthesizing gains", false);
+    let mut done = Vec::new();
+    for (role, design) in preset.map(Preset::designs).unwrap_or_default() {
+        let synthesis =
+            synthesize(&design).map_err(|error| Failure::from(error).coded(Code::Synthesis))?;
+        done.push((role.name(), synthesis));
+    }
+    drop(shown);
+    if arguments.json {
+        print_json(&done.into_iter().collect::<BTreeMap<_, _>>())?;
+    } else {
+        for (role, synthesis) in &done {
+            print(&terminal::synthesis(role, synthesis))?;
+        }
+    }
+    Ok(Code::Done)
+}
+
+fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
+    let ReplayArguments {
+        run,
+        episode,
+        controller,
+        interval,
+        out,
+        overwrite,
+        json,
+        quiet,
+    } = arguments;
+    let table = match out {
+        Some(out) => out.clone(),
+        None => run.join(format!("replay-{episode}-{controller}.parquet")),
+    };
+    let files = ReplayFiles::beside(table);
+    if out.is_some() {
+        files.may_be_written(*overwrite)?;
+    }
+    let shown = Shown::of_work("flying the episode again", *quiet);
+    let replayed = replay(run, *episode, controller, *interval);
+    drop(shown);
+    let replayed = replayed?;
+    OutputFile::claim(&files.table)?.write_parquet(&replayed.table())?;
+    let figures = trace(&replayed);
+    OutputFile::claim(&files.page)?.write(figures.html.as_bytes())?;
+    OutputFile::claim(&files.picture)?.write(figures.svg.as_bytes())?;
+    let flight = (run.as_path(), *episode, controller.as_str());
+    if *json {
+        print_json(&terminal::replay_json(&replayed, flight, &files))?;
+    } else if !quiet {
+        print(&terminal::replay(&replayed, flight, &files))?;
+    }
+    Ok(Code::Done)
+}

@@ -1,0 +1,379 @@
+//! From the draws of a fault to what it does to an agent's channels: the one place that says what each kind means.
+
+use super::{Block, Entries};
+use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
+use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link};
+use crate::draw::{AgentDraw, FaultDraw, member};
+use crate::model::exogenous::delay_line::Ring;
+use crate::model::exogenous::noise::Noise;
+use crate::model::exogenous::window::{Burst, Switch};
+use crate::model::exogenous::{Signals, Wave};
+use crate::model::lanes::{Lane, MAX_WIDTH};
+use std::f64::consts::TAU;
+
+/// A fault of one agent in the lanes of a block, and the channels from `first` on.
+#[derive(Clone, Copy)]
+pub(super) struct FaultLanes<'a> {
+    pub(super) block: &'a Block<'a>,
+    pub(super) fault: &'a Fault,
+    /// Which fault of the campaign.
+    pub(super) index: usize,
+    pub(super) agent: usize,
+    pub(super) first: usize,
+}
+
+/// What a changed mass does to a channel: by what share of it the inertia grows, and which force comes with it.
+#[derive(Clone, Copy, Default)]
+struct PlantChange {
+    inertia: f64,
+    force: f64,
+}
+
+impl FaultLanes<'_> {
+    /// Adds what the fault does, if it may strike (or does) in some lane.
+    pub(super) fn add<L: Lane, const NC: usize>(
+        &self,
+        signals: &mut Signals<L, NC>,
+        entries: Entries,
+    ) {
+        let fault = self.fault;
+        let listed = match entries {
+            Entries::Possible => may_strike(fault, self.first, NC),
+            Entries::Acting => (0..NC).any(|c| self.strikes::<L>(c)),
+        };
+        if !listed {
+            return;
+        }
+        let measured = fault.link == Link::Measurement;
+        let step_s = self.block.campaign.time.step_s;
+        signals.rises |= fault.ramp_s.is_some() || fault.kind == FaultKind::Drift;
+        let value = |parameter: usize, c: usize| self.values::<L>(parameter, c);
+        let one = [1.0; MAX_WIDTH];
+        match fault.kind {
+            FaultKind::LossOfEffectiveness => signals.losses.push(self.switches(&|c| value(0, c))),
+            FaultKind::Float => signals.losses.push(self.switches(&|_| one)),
+            FaultKind::Intermittent => {
+                let bursts = self.bursts(&|c| value(0, c), Some(1), Some(2));
+                signals.intermittents.push(bursts);
+            }
+            FaultKind::HardOver => signals.hard_overs.push(self.switches(&|c| value(0, c))),
+            FaultKind::Bias | FaultKind::FalseData | FaultKind::Drift => {
+                let list = if measured {
+                    &mut signals.sensor_biases
+                } else {
+                    &mut signals.command_biases
+                };
+                list.push(self.switches(&|c| match fault.kind {
+                    FaultKind::Drift => self.drifted::<L>(c),
+                    _ => value(0, c),
+                }));
+            }
+            FaultKind::Stuck => signals
+                .rate_limits
+                .push(self.switches(&|_| [0.0; MAX_WIDTH])),
+            FaultKind::RateLimit => {
+                let limits = self.switches(&|c| value(0, c).map(|rate| rate * step_s));
+                signals.rate_limits.push(limits);
+            }
+            FaultKind::Oscillatory => {
+                let waves = self.waves(&|c| value(1, c).map(|w| w / TAU), 2, None);
+                if measured {
+                    signals.sensor_waves.push(waves);
+                } else {
+                    signals.command_waves.push(waves);
+                }
+            }
+            FaultKind::SmoothedSquare => {
+                let waves = self.waves(&|c| value(1, c).map(f64::recip), 3, Some(2));
+                signals.squares.push(waves);
+            }
+            FaultKind::Delay | FaultKind::Replay => {
+                let (records, switches) = (fault.kind == FaultKind::Delay, self.switches(&|_| one));
+                let lengths = std::array::from_fn(|c| self.ring_steps::<L>(c));
+                if measured {
+                    signals
+                        .sensor_rings
+                        .push(Ring::new(records, switches, lengths));
+                } else {
+                    signals
+                        .command_rings
+                        .push(Ring::new(records, switches, lengths));
+                }
+            }
+            FaultKind::Scale => signals.scales.push(self.switches(&|c| value(0, c))),
+            FaultKind::Noise => signals.noises.push(Noise {
+                entry: self.entry(),
+                members: self.members(),
+                switch: self.switches(&|c| value(0, c)),
+                samples: [[L::number(0.0); 4]; NC],
+            }),
+            FaultKind::Outlier => {
+                signals
+                    .outliers
+                    .push(self.bursts(&|c| value(0, c), None, Some(1)))
+            }
+            FaultKind::Freeze => signals.sensor_holds.push(self.bursts(&|_| one, None, None)),
+            FaultKind::Dropout => {
+                signals
+                    .sensor_holds
+                    .push(self.bursts(&|_| one, Some(0), Some(1)))
+            }
+            FaultKind::DenialOfService if measured => {
+                signals
+                    .sensor_holds
+                    .push(self.bursts(&|_| one, Some(0), Some(1)));
+            }
+            FaultKind::DenialOfService => {
+                signals
+                    .command_holds
+                    .push(self.bursts(&|_| one, Some(0), Some(1)));
+            }
+            FaultKind::Interference => signals.leaks.push(self.switches(&|c| value(0, c))),
+            FaultKind::Mass | FaultKind::Inertia | FaultKind::CenterOfMass | FaultKind::Payload => {
+                let changed = |c: usize| self.plant_change::<L>(c);
+                signals
+                    .inertias
+                    .push(self.switches(&|c| changed(c).map(|change| change.inertia)));
+                signals
+                    .weights
+                    .push(self.switches(&|c| changed(c).map(|change| change.force)));
+            }
+        }
+    }
+
+    /// A number of each lane's draw.
+    fn lanes<L: Lane>(&self, pick: &dyn Fn(&FaultDraw) -> f64) -> [f64; MAX_WIDTH] {
+        self.block
+            .lanes::<L>(self.agent, |draw| pick(&draw.faults[self.index]))
+    }
+
+    /// Whether it strikes a channel in some lane.
+    fn strikes<L: Lane>(&self, c: usize) -> bool {
+        let struck = |draw: &FaultDraw| f64::from(u8::from(draw.strikes[self.first + c]));
+        self.lanes::<L>(&struck).contains(&1.0)
+    }
+
+    fn values<L: Lane>(&self, parameter: usize, c: usize) -> [f64; MAX_WIDTH] {
+        self.lanes::<L>(&|draw| draw.parameters[parameter][self.first + c])
+    }
+
+    /// A value from the fault's onset to its end, along its ramp.
+    fn switch<L: Lane>(&self, c: usize, value: [f64; MAX_WIDTH]) -> Switch<L> {
+        let time = self.block.campaign.time;
+        let struck = |pick: &dyn Fn(&FaultDraw) -> f64| -> L {
+            let of_lanes = self.lanes::<L>(&|draw| {
+                if draw.strikes[self.first + c] {
+                    pick(draw)
+                } else {
+                    f64::INFINITY
+                }
+            });
+            L::load(&of_lanes)
+        };
+        let ramp_steps = |draw: &FaultDraw| match self.fault.kind {
+            FaultKind::Drift => self.steps_left(draw),
+            _ if draw.ramp_s > 0.0 => time.whole_steps(draw.ramp_s),
+            _ => 1.0,
+        };
+        Switch {
+            onset: struck(&|draw| f64::from(time.onset_step(draw.onset_s))),
+            end: struck(&|draw| {
+                if draw.duration_s.is_finite() {
+                    f64::from(draw.end_step(time))
+                } else {
+                    f64::INFINITY
+                }
+            }),
+            inverse_ramp: L::load(&self.lanes::<L>(&|draw| ramp_steps(draw).recip())),
+            value: L::load(&value),
+        }
+    }
+
+    fn switches<L: Lane, const NC: usize>(
+        &self,
+        value: &dyn Fn(usize) -> [f64; MAX_WIDTH],
+    ) -> [Switch<L>; NC] {
+        std::array::from_fn(|c| self.switch(c, value(c)))
+    }
+
+    /// What a drift amounts to at the end of the run, if nothing ends it before.
+    fn drifted<L: Lane>(&self, c: usize) -> [f64; MAX_WIDTH] {
+        let step_s = self.block.campaign.time.step_s;
+        self.lanes::<L>(&|draw| draw.parameters[0][self.first + c] * self.steps_left(draw) * step_s)
+    }
+
+    /// Steps from the onset to the end of the run, both of which are shown.
+    fn steps_left(&self, draw: &FaultDraw) -> f64 {
+        let time = self.block.campaign.time;
+        f64::from(time.steps - time.onset_step(draw.onset_s) + 1)
+    }
+
+    fn entry(&self) -> u32 {
+        u32::try_from(self.index).unwrap_or(u32::MAX)
+    }
+
+    fn is_link(&self) -> bool {
+        self.fault.target == FaultTarget::Network
+    }
+
+    /// Addresses of the channels; a link fails as a whole.
+    fn members<const NC: usize>(&self) -> [u32; NC] {
+        std::array::from_fn(|c| {
+            if self.is_link() {
+                member(self.agent, 0)
+            } else {
+                member(self.agent, self.first + c)
+            }
+        })
+    }
+
+    /// A value that is there in some slots of time: slots of so many seconds, or of one step without; all of them are hit
+    /// where there is no share.
+    fn bursts<L: Lane, const NC: usize>(
+        &self,
+        value: &dyn Fn(usize) -> [f64; MAX_WIDTH],
+        slot_s: Option<usize>,
+        share: Option<usize>,
+    ) -> Burst<L, NC> {
+        let time = self.block.campaign.time;
+        Burst {
+            entry: self.entry(),
+            together: self.is_link(),
+            members: self.members(),
+            switch: self.switches(value),
+            slot_steps: std::array::from_fn(|c| match slot_s {
+                Some(slot_s) => self
+                    .values::<L>(slot_s, c)
+                    .map(|slot_s| small(time.whole_steps(slot_s))),
+                None => [1; MAX_WIDTH],
+            }),
+            threshold: std::array::from_fn(|c| match share {
+                // Hit with this probability, to within 2^-32.
+                Some(share) => self
+                    .values::<L>(share, c)
+                    .map(|share| small(share * 4_294_967_296.0 - 1.0)),
+                None => [u32::MAX; MAX_WIDTH],
+            }),
+        }
+    }
+
+    fn waves<L: Lane, const NC: usize>(
+        &self,
+        frequency_hz: &dyn Fn(usize) -> [f64; MAX_WIDTH],
+        phase_rad: usize,
+        smoothing: Option<usize>,
+    ) -> [Wave<L>; NC] {
+        std::array::from_fn(|c| Wave {
+            switch: self.switch(c, self.values::<L>(0, c)),
+            inverse_smoothing: match smoothing {
+                Some(smoothing) => L::load(&self.values::<L>(smoothing, c).map(f64::recip)),
+                None => L::number(0.0),
+            },
+            phase: L::turns(&self.values::<L>(phase_rad, c).map(|phase| phase / TAU)),
+            advance: self.block.advance::<L>(frequency_hz(c)),
+            held: L::number(0.0),
+        })
+    }
+
+    /// Samples that a delay or a replay keeps; a replay has recorded nothing before the start.
+    fn ring_steps<L: Lane>(&self, c: usize) -> [u32; MAX_WIDTH] {
+        let time = self.block.campaign.time;
+        let steps = self.lanes::<L>(&|draw| {
+            let steps = time.whole_steps(draw.parameters[0][self.first + c]);
+            match self.fault.kind {
+                FaultKind::Replay => steps.min(f64::from(time.onset_step(draw.onset_s))),
+                _ => steps,
+            }
+        });
+        steps.map(|steps| small(steps).max(1))
+    }
+
+    fn plant_change<L: Lane>(&self, c: usize) -> [PlantChange; MAX_WIDTH] {
+        let channel = self.first + c;
+        let agent = &self.block.campaign.agent;
+        let change = |draw: &AgentDraw| {
+            let of = |parameter: usize| draw.faults[self.index].parameters[parameter][channel];
+            match (self.fault.kind, agent) {
+                (FaultKind::Mass, Agent::Uav(_)) if channel >= FIRST_ATTITUDE => {
+                    PlantChange::default()
+                }
+                (FaultKind::Inertia, Agent::Uav(_)) if channel < FIRST_ATTITUDE => {
+                    PlantChange::default()
+                }
+                (FaultKind::Mass | FaultKind::Inertia, _) => PlantChange {
+                    inertia: of(0),
+                    force: 0.0,
+                },
+                (FaultKind::CenterOfMass, Agent::Uav(uav)) => PlantChange {
+                    inertia: 0.0,
+                    force: tilting(uav, channel, uav.mass_kg * draw.mass_scale, [of(0), of(1)]),
+                },
+                (FaultKind::Payload, Agent::Uav(uav)) => {
+                    loaded(uav, draw, channel, of(0), [of(1), of(2)])
+                }
+                _ => PlantChange::default(),
+            }
+        };
+        std::array::from_fn(|lane| {
+            if lane < L::WIDTH {
+                change(&self.block.episode(lane).agents[self.agent])
+            } else {
+                PlantChange::default()
+            }
+        })
+    }
+}
+
+/// The torque with which a weight beside the centre of thrust tilts a UAV that hovers: (x, y, 0) x (0, 0, -m g).
+fn tilting(uav: &Uav, channel: usize, mass_kg: f64, [x_m, y_m]: [f64; 2]) -> f64 {
+    let weight_n = mass_kg * uav.gravity_m_s2;
+    match channel.checked_sub(FIRST_ATTITUDE) {
+        Some(0) => -y_m * weight_n,
+        Some(1) => x_m * weight_n,
+        _ => 0.0,
+    }
+}
+
+/// A point mass that is hung on a UAV. Its own part of the gyroscopic torque is left out.
+fn loaded(
+    uav: &Uav,
+    draw: &AgentDraw,
+    channel: usize,
+    mass_kg: f64,
+    offset_m: [f64; 2],
+) -> PlantChange {
+    let [x2, y2] = offset_m.map(|offset| offset * offset);
+    let inertia = match channel.checked_sub(FIRST_ATTITUDE) {
+        None => mass_kg / (uav.mass_kg * draw.mass_scale),
+        Some(axis) => {
+            let arm2 = [y2, x2, x2 + y2][axis];
+            mass_kg * arm2 / (uav.inertia_kg_m2[axis] * draw.inertia_scale)
+        }
+    };
+    PlantChange {
+        inertia,
+        force: tilting(uav, channel, mass_kg, offset_m),
+    }
+}
+
+/// A count as a word of 32 bits.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a count, which saturates"
+)]
+pub(super) fn small(count: f64) -> u32 {
+    count.round() as u32
+}
+
+/// Whether a fault strikes one of the `count` channels from `first` on in some episode.
+fn may_strike(fault: &Fault, first: usize, count: usize) -> bool {
+    let within = |channels: &FaultChannels| match channels {
+        FaultChannels::One => true,
+        FaultChannels::These(channels) => channels
+            .iter()
+            .any(|channel| (first..first + count).contains(channel)),
+    };
+    let mut of_agents = fault.probability.iter().zip(&fault.channels);
+    of_agents.any(|(probability, channels)| *probability > 0.0 && within(channels))
+}

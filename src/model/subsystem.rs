@@ -1,0 +1,158 @@
+//! The parts of an episode that never act on each other, and the reference tables of their channels.
+
+use super::lanes::Real;
+use super::plant::ReferenceRow;
+use super::plant::biped::leg_rows;
+use super::plant::uav::{inertia, non_inertial};
+use crate::agent::ActuationKind;
+use crate::agent::robot::dynamics::{inverse_dynamics, mass_matrix};
+use crate::agent::robot::{JOINTS, LEG_JOINTS, Robot};
+use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
+use crate::campaign::{Campaign, DisturbanceKind};
+use crate::reference::ReferencePoint;
+use nalgebra::{Cholesky, Matrix6, Vector6};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What holds a group of channels together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PlantKind {
+    /// One axis of translation, fully actuated.
+    Axis,
+    /// All three of them, where rotor vortices make distances matter.
+    Translation,
+    /// The attitude, fully actuated.
+    Attitude,
+    /// All channels of a UAV, with thrust along the body axis.
+    Thrust,
+    /// A leg of a biped.
+    Leg,
+}
+
+/// A group of channels and its reference table, `[half step][agent][channel][row]`.
+pub(crate) struct Part<R> {
+    pub(crate) plant: PlantKind,
+    pub(crate) channels: Range<usize>,
+    /// Rows of each channel.
+    pub(crate) rows: usize,
+    pub(crate) table: Vec<ReferenceRow<R>>,
+}
+
+/// The parts of a campaign's episodes.
+pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Part<R>> {
+    let (plants, rows) = match &campaign.agent {
+        Agent::Uav(uav) => (uav_plants(uav, campaign.has_vortices()), 1),
+        Agent::Biped(_) => {
+            let legs = [0..LEG_JOINTS, LEG_JOINTS..JOINTS].map(|joints| (PlantKind::Leg, joints));
+            (legs.to_vec(), leg_rows(campaign.is_limited()))
+        }
+    };
+    let half_steps = (0..=2 * campaign.time.steps).into_par_iter();
+    let agents: Vec<Vec<ReferenceRow<R>>> = half_steps
+        .flat_map_iter(|half_step| {
+            let t_s = f64::from(half_step) * campaign.time.step_s / 2.0;
+            (0..campaign.team).map(move |agent| agent_rows(campaign, agent, t_s))
+        })
+        .collect();
+    let part = |(plant, channels): (PlantKind, Range<usize>)| {
+        let own = rows * channels.start..rows * channels.end;
+        Part {
+            plant,
+            channels,
+            rows,
+            table: agents
+                .iter()
+                .flat_map(|agent| &agent[own.clone()])
+                .copied()
+                .collect(),
+        }
+    };
+    plants.into_iter().map(part).collect()
+}
+
+fn uav_plants(uav: &Uav, vortices: bool) -> Vec<(PlantKind, Range<usize>)> {
+    match uav.actuation {
+        ActuationKind::Thrust => vec![(PlantKind::Thrust, 0..6)],
+        ActuationKind::Full | ActuationKind::Limited if vortices => vec![
+            (PlantKind::Translation, 0..FIRST_ATTITUDE),
+            (PlantKind::Attitude, FIRST_ATTITUDE..6),
+        ],
+        ActuationKind::Full | ActuationKind::Limited => vec![
+            (PlantKind::Axis, 0..1),
+            (PlantKind::Axis, 1..2),
+            (PlantKind::Axis, 2..FIRST_ATTITUDE),
+            (PlantKind::Attitude, FIRST_ATTITUDE..6),
+        ],
+    }
+}
+
+/// The rows of an agent's channels at one instant, `[channel][row]`.
+fn agent_rows<R: Real>(campaign: &Campaign, agent: usize, t_s: f64) -> Vec<ReferenceRow<R>> {
+    let points = campaign.reference.at(agent, t_s);
+    let rows = match &campaign.agent {
+        Agent::Uav(uav) => uav_rows(uav, &points),
+        Agent::Biped(biped) => {
+            let stands = |kind| kind == DisturbanceKind::GroundReaction;
+            let ground = if campaign.disturbances.iter().any(|entry| stands(entry.kind)) {
+                let reference = &campaign.reference;
+                reference.ground_reaction(&biped.robot, agent, t_s)
+            } else {
+                [0.0; JOINTS]
+            };
+            biped_rows(&biped.robot, &points, &ground, campaign.is_limited())
+        }
+    };
+    rows.into_iter().map(|row| row.map(R::from_f64)).collect()
+}
+
+/// Under thrust, roll and pitch have no reference: they follow from the force, and the feedforward of the attitude is worked
+/// out in the loop.
+fn uav_rows(uav: &Uav, points: &[ReferencePoint]) -> Vec<ReferenceRow<f64>> {
+    let inertia = inertia(uav);
+    let non_inertial = non_inertial(uav, std::array::from_fn(|c| points[c].rate));
+    let of_channel = points.iter().zip(inertia).zip(non_inertial);
+    of_channel
+        .map(|((point, inertia), non_inertial)| {
+            let feedforward = inertia * point.acceleration + non_inertial;
+            [point.value, point.rate, point.acceleration, feedforward]
+        })
+        .collect()
+}
+
+/// The rows of both legs, as plant_biped lists them; `ground` is J'f, N m.
+fn biped_rows(
+    robot: &Robot,
+    points: &[ReferencePoint],
+    ground: &[f64; JOINTS],
+    cut: bool,
+) -> Vec<ReferenceRow<f64>> {
+    let mut rows = Vec::with_capacity(leg_rows(cut) * JOINTS);
+    let of_legs = points.chunks(LEG_JOINTS).zip(ground.chunks(LEG_JOINTS));
+    for (leg, (points, ground)) in robot.legs.iter().zip(of_legs) {
+        let all = |pick: fn(&ReferencePoint) -> f64| Vector6::from_fn(|c, _| pick(&points[c]));
+        let (q, rate) = (all(|point| point.value), all(|point| point.rate));
+        let acceleration = all(|point| point.acceleration);
+        let mass = mass_matrix(leg, &q);
+        let feedforward = inverse_dynamics(leg, &robot.gravity_m_s2, &q, &rate, &acceleration);
+        let inverse = if cut { inverse(mass) } else { Matrix6::zeros() };
+        for c in 0..LEG_JOINTS {
+            rows.push([q[c], rate[c], acceleration[c], feedforward[c]]);
+            rows.extend(matrix_rows(&mass, c, ground[c]));
+            if cut {
+                rows.extend(matrix_rows(&inverse, c, 0.0));
+            }
+        }
+    }
+    rows
+}
+
+/// A row of a matrix in two rows of a table, and what fits behind it.
+fn matrix_rows(matrix: &Matrix6<f64>, row: usize, beside: f64) -> [ReferenceRow<f64>; 2] {
+    let m = |column| matrix[(row, column)];
+    [[m(0), m(1), m(2), m(3)], [m(4), m(5), beside, 0.0]]
+}
+
+/// Not a number where the matrix is not positive definite, so that a flight over it counts as diverged.
+fn inverse(mass: Matrix6<f64>) -> Matrix6<f64> {
+    Cholesky::new(mass).map_or(Matrix6::repeat(f64::NAN), |factor| factor.inverse())
+}

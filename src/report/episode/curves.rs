@@ -1,0 +1,298 @@
+//! What a channel showed over time: errors, states, faults, commands (the paper's Figures 11 to 20).
+
+use super::episode_data::{Flight, Scene};
+use super::frame::Frame;
+use crate::agent::ActuationKind;
+use crate::agent::{Agent, FIRST_ATTITUDE};
+use crate::model::Shown;
+use crate::report::page::document::{Figure, Key};
+use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
+use crate::util::format::sentence;
+
+/// Room around the values that are no peaks, in units of their range.
+const ROOM: f64 = 0.6;
+
+/// What is shown of a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Error,
+    State,
+    ActuatorFault,
+    SensorFault,
+    Command,
+}
+
+impl Quantity {
+    pub(super) const ALL: [Self; 5] = [
+        Self::Error,
+        Self::State,
+        Self::ActuatorFault,
+        Self::SensorFault,
+        Self::Command,
+    ];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Error => "tracking error e",
+            Self::State => "state x",
+            Self::ActuatorFault => "actuator fault f1",
+            Self::SensorFault => "sensor fault f2",
+            Self::Command => "command u",
+        }
+    }
+
+    fn symbol(self) -> &'static str {
+        match self {
+            Self::Error => "e",
+            Self::State => "x",
+            Self::ActuatorFault => "f1",
+            Self::SensorFault => "f2",
+            Self::Command => "u",
+        }
+    }
+
+    /// The unit in a channel of m or rad.
+    fn unit(self, of_channel: &'static str, robot: bool) -> &'static str {
+        match (self, of_channel) {
+            (Self::Error | Self::State, unit) => unit,
+            (Self::ActuatorFault, "m") => "m/s²",
+            (Self::ActuatorFault, _) => "rad/s²",
+            (Self::SensorFault, "m") => "m/s",
+            (Self::SensorFault, _) => "rad/s",
+            (Self::Command, "m") if !robot => "N",
+            (Self::Command, _) => "N m",
+        }
+    }
+
+    /// What each controller made of it.
+    fn flown(self) -> fn(&Shown) -> f64 {
+        match self {
+            Self::Error => |shown| shown.e,
+            Self::State => |shown| shown.x,
+            Self::ActuatorFault => |shown| shown.f1_hat,
+            Self::SensorFault => |shown| shown.f2_hat,
+            Self::Command => |shown| shown.u,
+        }
+    }
+
+    /// What the flight is compared with.
+    fn truth(self) -> Option<fn(&Shown) -> f64> {
+        match self {
+            Self::State => Some(|shown| shown.r),
+            Self::ActuatorFault => Some(|shown| shown.f1),
+            Self::SensorFault => Some(|shown| shown.f2),
+            Self::Error | Self::Command => None,
+        }
+    }
+
+    /// What the controller took it for.
+    fn estimate(self) -> Option<fn(&Shown) -> f64> {
+        match self {
+            Self::Error => Some(|shown| shown.e_hat),
+            Self::State => Some(|shown| shown.r + shown.e_hat),
+            Self::ActuatorFault | Self::SensorFault | Self::Command => None,
+        }
+    }
+
+    /// Whether what is flown is an estimate, which not every controller makes.
+    fn is_fault(self) -> bool {
+        matches!(self, Self::ActuatorFault | Self::SensorFault)
+    }
+}
+
+/// A channel's quantity in one or several flights. The frame is the same whichever flights are shown.
+pub(super) fn panel(
+    scene: &Scene<'_>,
+    quantity: Quantity,
+    at: (usize, usize),
+    shown: &[Flight<'_>],
+) -> (Panel, bool) {
+    let (agent, channel) = at;
+    let frame = frame(scene, quantity, at);
+    let mut marks = Vec::new();
+    let mut draw = |flight: &Flight<'_>, pick: fn(&Shown) -> f64, ink: Ink, stroke: Stroke| {
+        let Some(frame) = frame else {
+            return;
+        };
+        let mut curve = scene.curve(flight, at, pick);
+        if ink == Ink::Truth && quantity == Quantity::State {
+            let left_s = scene.left_s(flight, agent);
+            curve.retain(|&(t_s, _)| t_s < left_s);
+        }
+        let shown = scene.shown(flight, agent, |k| {
+            curve.get(k).is_some_and(|point| !frame.is_near(point.1))
+        });
+        let near = curve
+            .iter()
+            .take(shown)
+            .map(|&(t_s, value)| (t_s, frame.near(value)));
+        let near: Vec<(f64, f64)> = near.collect();
+        marks.push(Mark::Line(Scene::thin(&near, frame.fine()), ink, stroke));
+    };
+    let truth_stroke = match quantity {
+        Quantity::State => Stroke::Dashed,
+        _ => Stroke::Solid,
+    };
+    if let (Some(truth), Some(first)) = (quantity.truth(), shown.first()) {
+        draw(first, truth, Ink::Truth, truth_stroke);
+    }
+    // The first is drawn last, above the others.
+    for flight in shown.iter().rev() {
+        let curve = scene.curve(flight, at, quantity.flown());
+        if quantity.is_fault() && curve.iter().all(|(_, value)| *value == 0.0) {
+            continue;
+        }
+        draw(flight, quantity.flown(), flight.ink(), Stroke::Solid);
+    }
+    if let (Some(estimate), Some(first)) = (quantity.estimate(), shown.first()) {
+        draw(first, estimate, scene.estimate_ink(), Stroke::Dashed);
+    }
+    let robot = matches!(scene.campaign.agent, Agent::Biped(_));
+    let unit = quantity.unit(scene.campaign.unit(channel), robot);
+    let failed = shown.iter().filter_map(|flight| {
+        let t_s = scene.failed_at_s(flight, agent)?;
+        Some((t_s, flight.ink()))
+    });
+    let name = &scene.campaign.channels()[channel];
+    let panel = Panel {
+        title: name.to_string(),
+        x: Axis {
+            range: Some((0.0, scene.duration_s)),
+            ..Axis::new("t, s")
+        },
+        y: Axis {
+            range: frame.map(|frame| frame.range()),
+            ..Axis::new(format!("{}, {unit}", quantity.symbol()))
+        },
+        marks,
+        spans: scene.windows(agent, channel),
+        levels: limits(scene, quantity, channel),
+        moments: failed.collect(),
+        ..Panel::default()
+    };
+    (panel, frame.is_some_and(|frame| frame.cut))
+}
+
+/// The frame of a channel's quantity: what every flight showed of it, and its limits.
+fn frame(scene: &Scene<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Frame> {
+    let mut values = Vec::new();
+    for flight in &scene.flights {
+        let until_s = scene.until_s(flight, at.0);
+        let picks = [
+            quantity.truth(),
+            quantity.estimate(),
+            Some(quantity.flown()),
+        ];
+        for pick in picks.into_iter().flatten() {
+            let curve = scene.curve(flight, at, pick).into_iter();
+            let before = curve.filter(|&(t_s, _)| t_s <= until_s);
+            values.extend(before.map(|(_, value)| value));
+        }
+    }
+    let mut frame = Frame::of(values, ROOM)?;
+    frame.cut |= scene
+        .flights
+        .iter()
+        .any(|flight| flight.outcomes[at.0].diverged);
+    Some(frame.with(&limits(scene, quantity, at.1)))
+}
+
+/// The limits of a command, where they cut.
+fn limits(scene: &Scene<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
+    let both = |limit: f64| vec![-limit, limit];
+    match (&scene.campaign.agent, quantity) {
+        (_, quantity) if quantity != Quantity::Command => Vec::new(),
+        (Agent::Uav(uav), _) if uav.actuation == ActuationKind::Thrust => match channel {
+            FIRST_ATTITUDE.. => both(uav.max_torque_n_m),
+            // The force demanded has no limit of its own: the thrust has, which is along the body axis.
+            _ => Vec::new(),
+        },
+        (Agent::Biped(biped), _) if biped.actuation == ActuationKind::Limited => {
+            let joint = biped.robot.joints().nth(channel);
+            joint.map_or(Vec::new(), |joint| both(joint.torque_max_n_m))
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// An agent's quantity, a panel for each channel.
+pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Figure {
+    let channels = 0..scene.campaign.channels().len();
+    let drawn: Vec<(Panel, bool)> = channels
+        .map(|channel| panel(scene, quantity, (agent, channel), &scene.flights))
+        .collect();
+    let cut = drawn.iter().any(|(_, cut)| *cut);
+    let asked = scene.asked();
+    let mut legend = Vec::new();
+    match quantity {
+        Quantity::State => legend.push(Key::dashes(Ink::Truth, "reference r")),
+        Quantity::ActuatorFault | Quantity::SensorFault => {
+            legend.push(Key::line(
+                Ink::Truth,
+                format!("{} under {}", quantity.symbol(), asked.name),
+            ));
+        }
+        Quantity::Error | Quantity::Command => {}
+    }
+    for flight in &scene.flights {
+        let estimates = (0..scene.campaign.channels().len()).any(|channel| {
+            let curve = scene.curve(flight, (agent, channel), quantity.flown());
+            curve.iter().any(|(_, value)| *value != 0.0)
+        });
+        match quantity.is_fault() {
+            true if estimates => {
+                legend.push(Key::line(
+                    flight.ink(),
+                    format!("estimate of {}", flight.name),
+                ));
+            }
+            true => {}
+            false => legend.push(Key::line(flight.ink(), flight.name)),
+        }
+    }
+    if quantity.estimate().is_some() {
+        let text = format!("estimate of {}", asked.name);
+        legend.push(Key::dashes(scene.estimate_ink(), text));
+    }
+    if drawn.iter().any(|(panel, _)| !panel.spans.is_empty()) {
+        legend.push(Key::shade(Ink::Fault, "a fault strikes the channel"));
+    }
+    if drawn.iter().any(|(panel, _)| !panel.levels.is_empty()) {
+        legend.push(Key::line(Ink::Limit, "limit"));
+    }
+    let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
+    let mut caption = sentence(quantity.name());
+    let mut add = |sentence: &str| {
+        caption.push(' ');
+        caption.push_str(sentence);
+    };
+    match quantity {
+        Quantity::ActuatorFault => add(
+            "f1 lumps everything that the feedforward does not cancel: faults, disturbances, coupling, model errors.",
+        ),
+        Quantity::SensorFault => add("f2 is what the rate is measured too large by."),
+        Quantity::Command if !scene.campaign.is_limited() => {
+            add("The command that acts, after faults; no limit cuts it in this campaign.");
+        }
+        Quantity::Command => {
+            add("The command that acts, after limits and faults.");
+            if scene.campaign.agent.actuation() == ActuationKind::Thrust {
+                add(
+                    "x, y and z are the force demanded, of which the thrust along the body axis gives what it can.",
+                );
+            }
+        }
+        Quantity::Error | Quantity::State => {}
+    }
+    if failed {
+        add("The line down marks the time at which the flight of its colour failed.");
+    }
+    if cut {
+        add("Peaks and curves that run away leave the frame.");
+    }
+    Figure {
+        panels: drawn.into_iter().map(|(panel, _)| panel).collect(),
+        legend,
+        caption,
+    }
+}

@@ -1,0 +1,191 @@
+//! What an episode met: faults, disturbances and the rest of its draw.
+
+use super::episode_data::Scene;
+use crate::campaign::Link;
+use crate::draw::AgentDraw;
+use crate::report::page::document::{Block, Cell, Grid, Section};
+use crate::util::format::number;
+use std::sync::Arc;
+
+/// Values that are listed; of more, the lowest and the highest.
+const MOST_LISTED: usize = 3;
+
+/// The draw of the episode.
+pub(super) fn section(scene: &Scene<'_>) -> Section {
+    let mut blocks = vec![faults(scene)];
+    if !scene.campaign.disturbances.is_empty() {
+        let summary = match scene.campaign.disturbances.len() {
+            1 => "one disturbance of each agent".to_string(),
+            count => format!("{count} disturbances of each agent"),
+        };
+        blocks.push(Block::Folded(summary, vec![disturbances(scene)]));
+    }
+    let summary = "model errors, coupling and initial errors".to_string();
+    blocks.push(Block::Folded(summary, vec![conditions(scene)]));
+    Section::new("What it met", blocks)
+}
+
+fn faults(scene: &Scene<'_>) -> Block {
+    let mut grid = Grid::new([
+        "agent",
+        "fault",
+        "strikes",
+        "channels",
+        "from",
+        "until",
+        "ramp",
+        "parameters",
+    ]);
+    for (agent, draw) in scene.episode.agents.iter().enumerate() {
+        for (fault, drawn) in scene.campaign.faults.iter().zip(&draw.faults) {
+            if !drawn.occurs() {
+                continue;
+            }
+            let (from_s, until_s) = scene.window(drawn);
+            let names = scene.campaign.channels().iter().zip(&drawn.strikes);
+            let struck: Vec<&str> = names
+                .filter(|(_, strikes)| **strikes)
+                .map(|(name, _)| &**name)
+                .collect();
+            let channels = match struck.len() {
+                all if all == drawn.strikes.len() => "all".to_string(),
+                _ => struck.join(", "),
+            };
+            let parameters = fault.kind.parameters().iter().zip(&drawn.parameters);
+            let parameters = parameters.map(|(parameter, values)| {
+                let of_struck = scene
+                    .campaign
+                    .channels()
+                    .iter()
+                    .zip(values)
+                    .zip(&drawn.strikes);
+                let of_struck: Vec<_> = of_struck
+                    .filter(|(_, strikes)| **strikes)
+                    .map(|((name, value), _)| (name, *value))
+                    .collect();
+                match values.len() {
+                    1 => format!("{} {}", parameter.name, number(values[0])),
+                    _ => valued(parameter.name, &of_struck),
+                }
+            });
+            let target = fault.target.name();
+            let strikes = match (target, fault.link) {
+                ("network", Link::Command) => "network, command",
+                ("network", Link::Measurement) => "network, measurement",
+                _ => target,
+            };
+            grid.rows.push(vec![
+                Cell::number(agent.to_string()),
+                Cell::text(&*fault.name),
+                Cell::text(strikes),
+                Cell::text(channels),
+                Cell::number(format!("{} s", number(from_s))),
+                Cell::number(match until_s < scene.duration_s {
+                    true => format!("{} s", number(until_s)),
+                    false => "the end".to_string(),
+                }),
+                Cell::number(match drawn.ramp_s > 0.0 {
+                    true => format!("{} s", number(drawn.ramp_s)),
+                    false => "at once".to_string(),
+                }),
+                Cell::text(listed(parameters)),
+            ]);
+        }
+    }
+    match grid.rows.is_empty() {
+        true => Block::text("No fault struck anyone."),
+        false => Block::Grid(grid),
+    }
+}
+
+fn disturbances(scene: &Scene<'_>) -> Block {
+    let mut grid = Grid::new(["agent", "disturbance", "parameters"]);
+    for (agent, draw) in scene.episode.agents.iter().enumerate() {
+        for (disturbance, drawn) in scene.campaign.disturbances.iter().zip(&draw.disturbances) {
+            let parameters = disturbance.kind.parameters().iter().zip(drawn);
+            let parameters = parameters.map(|(parameter, values)| {
+                let names = scene.campaign.channels().iter().enumerate();
+                let acting: Vec<_> = names
+                    .zip(values)
+                    .filter(|((channel, _), _)| disturbance.kind.acts_on(*channel))
+                    .map(|((_, name), value)| (name, *value))
+                    .collect();
+                match values.len() {
+                    1 => format!("{} {}", parameter.name, number(values[0])),
+                    _ => valued(parameter.name, &acting),
+                }
+            });
+            grid.rows.push(vec![
+                Cell::number(agent.to_string()),
+                Cell::text(disturbance.kind.name()),
+                Cell::text(listed(parameters)),
+            ]);
+        }
+    }
+    Block::Grid(grid)
+}
+
+fn conditions(scene: &Scene<'_>) -> Block {
+    let mut grid = Grid::new([
+        "agent",
+        "true over modelled mass",
+        "inertia",
+        "coupling κ",
+        "delay of the command",
+        "initial error (RMS)",
+        "of the rate (RMS)",
+    ]);
+    for (agent, draw) in scene.episode.agents.iter().enumerate() {
+        let AgentDraw {
+            mass_scale,
+            inertia_scale,
+            kappa,
+            control_delay_s,
+            error,
+            error_rate,
+            ..
+        } = draw;
+        grid.rows.push(vec![
+            Cell::number(agent.to_string()),
+            Cell::number(number(*mass_scale)),
+            Cell::number(number(*inertia_scale)),
+            Cell::number(number(*kappa)),
+            Cell::number(format!("{} s", number(*control_delay_s))),
+            Cell::number(number(size(error))),
+            Cell::number(number(size(error_rate))),
+        ]);
+    }
+    Block::Grid(grid)
+}
+
+/// Parameters one after the other, none of them broken across lines.
+fn listed(parameters: impl Iterator<Item = String>) -> String {
+    let unbroken = parameters.map(|parameter| parameter.replace(' ', "\u{a0}"));
+    unbroken.collect::<Vec<_>>().join("; ")
+}
+
+/// A parameter's values: each with its channel, or their range.
+fn valued(name: &str, values: &[(&Arc<str>, f64)]) -> String {
+    let only = values.iter().map(|(_, value)| *value);
+    let (low, high) = only.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    match values {
+        [] => format!("{name} -"),
+        [(_, value)] => format!("{name} {}", number(*value)),
+        _ if low >= high => format!("{name} {}", number(low)),
+        _ if values.len() <= MOST_LISTED => {
+            let each = values
+                .iter()
+                .map(|(channel, value)| format!("{} ({channel})", number(*value)));
+            format!("{name} {}", each.collect::<Vec<_>>().join(", "))
+        }
+        _ => format!("{name} {} to {}", number(low), number(high)),
+    }
+}
+
+/// Root mean square.
+fn size(values: &[f64]) -> f64 {
+    let sum: f64 = values.iter().map(|value| value * value).sum();
+    (sum / values.len() as f64).sqrt()
+}

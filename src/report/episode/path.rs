@@ -1,0 +1,132 @@
+//! Where UAVs flew, from above and from the side (the paper's Figure 8).
+
+use super::episode_data::{Flight, Scene};
+use super::frame::Frame;
+use crate::model::Shown;
+use crate::report::page::document::{Block, Figure, Key, Section};
+use crate::report::page::plot::{Axis, Ink, Mark, Panel, SIZE, Stroke};
+
+/// Room around the values that are no peaks, in units of their range.
+const ROOM: f64 = 0.2;
+/// Points of a path.
+const POINTS: usize = 400;
+/// What the axes of a view show: x and y, x and z.
+const VIEWS: [(&str, [usize; 2], [&str; 2]); 2] = [
+    ("from above", [0, 1], ["x, m", "y, m"]),
+    ("from the side", [0, 2], ["x, m", "z, m"]),
+];
+
+/// The paths under every controller.
+pub(super) fn section(scene: &Scene<'_>) -> Section {
+    let mut cut = false;
+    let frames = [0, 1, 2].map(|coordinate| frame(scene, coordinate));
+    let mut panels = Vec::new();
+    for (view, channels, labels) in VIEWS {
+        let [Some(across), Some(up)] = channels.map(|channel| frames[channel]) else {
+            continue;
+        };
+        cut |= across.cut || up.cut;
+        for flight in &scene.flights {
+            panels.push(panel(scene, flight, (view, channels, labels), [across, up]));
+        }
+    }
+    let mut legend = vec![Key::dashes(Ink::Truth, "reference")];
+    legend.extend(
+        scene
+            .flights
+            .iter()
+            .map(|flight| Key::line(flight.ink(), flight.name)),
+    );
+    let mut caption = format!(
+        "Paths of all {}; a dot is where one begins.",
+        scene.campaign.agent.plural()
+    );
+    if cut {
+        caption.push_str(" Paths that run away leave the frame.");
+    }
+    let figure = Figure {
+        panels,
+        legend,
+        caption,
+    };
+    Section::new("Paths", vec![Block::Figure(figure)])
+}
+
+/// The frame of a coordinate: of all references and of all flights until they diverged.
+fn frame(scene: &Scene<'_>, channel: usize) -> Option<Frame> {
+    let mut values = Vec::new();
+    for flight in &scene.flights {
+        for agent in 0..scene.campaign.team {
+            let until_s = scene.until_s(flight, agent);
+            let picks: [fn(&Shown) -> f64; 2] = [|shown| shown.r, |shown| shown.x];
+            for pick in picks {
+                let curve = scene.curve(flight, (agent, channel), pick).into_iter();
+                let before = curve.filter(|&(t_s, _)| t_s <= until_s);
+                values.extend(before.map(|(_, value)| value));
+            }
+        }
+    }
+    let mut frame = Frame::of(values, ROOM)?;
+    let mut outcomes = scene.flights.iter().flat_map(|flight| flight.outcomes);
+    frame.cut |= outcomes.any(|outcome| outcome.diverged);
+    Some(frame)
+}
+
+fn panel(
+    scene: &Scene<'_>,
+    flight: &Flight<'_>,
+    (view, channels, labels): (&str, [usize; 2], [&str; 2]),
+    frames: [Frame; 2],
+) -> Panel {
+    let path = |agent: usize, pick: fn(&Shown) -> f64, until_s: f64| -> Vec<(f64, f64)> {
+        let [x, y] = channels.map(|channel| {
+            let mut curve = scene.curve(flight, (agent, channel), pick);
+            curve.retain(|&(t_s, _)| t_s <= until_s);
+            curve
+        });
+        let points = x.into_iter().zip(y).map(|((_, x), (_, y))| (x, y));
+        let near = |(x, y): (f64, f64)| match frames[0].is_near(x) && frames[1].is_near(y) {
+            true => (x, y),
+            false => (f64::NAN, f64::NAN),
+        };
+        let mut points: Vec<(f64, f64)> = points.map(near).collect();
+        let gone = |k: usize| points.get(k).is_some_and(|point| point.0.is_nan());
+        points.truncate(scene.shown(flight, agent, gone));
+        points
+            .chunks(points.len().div_ceil(POINTS).max(1))
+            .filter_map(|stretch| stretch.first().copied())
+            .chain(points.last().copied())
+            .collect()
+    };
+    let mut marks = Vec::new();
+    for agent in 0..scene.campaign.team {
+        let flown = path(agent, |shown| shown.x, f64::INFINITY);
+        let first = flown.first().copied();
+        marks.push(Mark::Line(flown, flight.ink(), Stroke::Solid));
+        let reference = path(agent, |shown| shown.r, scene.left_s(flight, agent));
+        marks.push(Mark::Line(reference, Ink::Truth, Stroke::Dashed));
+        marks.push(Mark::Dots(first.into_iter().collect(), flight.ink()));
+    }
+    let [x, y] = [0, 1].map(|k| Axis {
+        range: Some(frames[k].range()),
+        ..Axis::new(labels[k])
+    });
+    Panel {
+        title: format!("{}, {view}", flight.name),
+        x,
+        y,
+        marks,
+        equal: true,
+        height: Some(height(
+            frames[0].high - frames[0].low,
+            frames[1].high - frames[1].low,
+        )),
+        ..Panel::default()
+    }
+}
+
+/// Height of a panel in which a unit is as long along x as along y, px: not much of it is left empty.
+pub(super) fn height(across: f64, up: f64) -> f64 {
+    // Width of the axes, and what title and labels take of the height.
+    (290.0 * up / across + 95.0).clamp(SIZE.1, 1.7 * SIZE.1)
+}

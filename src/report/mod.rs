@@ -1,0 +1,76 @@
+//! The report of a run: a page that opens from disk, and the same in Markdown, made of the run's directory alone.
+//!
+//! Evidence (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
+
+mod episode;
+pub mod junit;
+pub mod notes;
+pub(crate) mod page;
+pub mod paper;
+pub mod problems;
+mod run_data;
+pub(crate) mod section;
+pub mod terminal;
+
+pub use episode::{Trace, trace};
+pub use run_data::ReportError;
+
+use crate::results::how_sure;
+use crate::run::directory::OutputDir;
+use crate::run::error::REPORTS;
+use page::document::Document;
+use page::{html, markdown};
+use problems::{shortcoming, unmet};
+use run_data::Evidence;
+use section::{conditions, errors, failures, gains, provenance, strata};
+use std::path::Path;
+
+/// Writes `report.html` and `report.md` of the run in a directory.
+///
+/// # Errors
+/// If the directory holds no run, or cannot be written.
+pub fn report(dir: &Path) -> Result<(), ReportError> {
+    let evidence = Evidence::read(dir)?;
+    let document = document(&evidence);
+    let out = OutputDir::existing(dir);
+    let [html, markdown] = REPORTS;
+    out.write(html, html::html(&document).as_bytes())?;
+    out.write(markdown, markdown::markdown(&document).as_bytes())?;
+    Ok(())
+}
+
+fn document(evidence: &Evidence) -> Document {
+    let manifest = &evidence.manifest;
+    let campaign = &evidence.campaign;
+    let wrong = [shortcoming(manifest, &evidence.dir), unmet(manifest)];
+    let sections = [
+        Some(failures::section(evidence)),
+        Some(errors::pairs(evidence)),
+        Some(errors::distributions(evidence)),
+        strata::section(evidence),
+        Some(conditions::ranking(evidence)),
+        Some(conditions::worst(evidence)),
+        Some(gains::section(evidence)),
+        Some(conditions::drawn(evidence)),
+        Some(provenance::section(evidence)),
+    ];
+    let mut lead = manifest.verdict.clone();
+    if manifest.episodes > 1 && campaign.controllers.len() > 1 {
+        lead.push(format!("({})", how_sure(campaign)));
+    }
+    Document {
+        title: manifest.name.clone(),
+        subtitle: format!(
+            "{} episodes of {} {} over {} s under {}; seed {}",
+            manifest.episodes,
+            campaign.team,
+            campaign.agent.noun(campaign.team),
+            f64::from(campaign.time.steps) * campaign.time.step_s,
+            campaign.controllers.join(", "),
+            manifest.seed
+        ),
+        lead,
+        warnings: wrong.into_iter().flatten().collect(),
+        sections: sections.into_iter().flatten().collect(),
+    }
+}

@@ -1,0 +1,191 @@
+//! What a report says, apart from how it looks: the same blocks become HTML and Markdown.
+
+use super::plot::{Ink, Panel, Stroke};
+use crate::util::format;
+
+/// A report.
+#[derive(Debug, Clone)]
+pub(crate) struct Document {
+    pub(crate) title: String,
+    /// What it is about, in a line.
+    pub(crate) subtitle: String,
+    /// What matters most, a sentence each.
+    pub(crate) lead: Vec<String>,
+    /// What is wrong with the run.
+    pub(crate) warnings: Vec<String>,
+    pub(crate) sections: Vec<Section>,
+}
+
+/// A part of a report.
+#[derive(Debug, Clone)]
+pub(crate) struct Section {
+    pub(crate) heading: String,
+    pub(crate) blocks: Vec<Block>,
+}
+
+impl Section {
+    pub(crate) fn new(heading: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self {
+            heading: heading.into(),
+            blocks,
+        }
+    }
+}
+
+/// A piece of a part.
+#[derive(Debug, Clone)]
+pub(crate) enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A command to type, or a file's text.
+    Code(String),
+    Grid(Grid),
+    Figure(Figure),
+    /// Details that are shown on demand.
+    Folded(String, Vec<Block>),
+}
+
+impl Block {
+    pub(crate) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+/// A table.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Grid {
+    pub(crate) head: Vec<String>,
+    pub(crate) rows: Vec<Vec<Cell>>,
+}
+
+impl Grid {
+    pub(crate) fn new<const N: usize>(head: [&str; N]) -> Self {
+        Self {
+            head: head.map(String::from).to_vec(),
+            rows: Vec::new(),
+        }
+    }
+}
+
+/// A cell of a table.
+#[derive(Debug, Clone)]
+pub(crate) enum Cell {
+    Text(String),
+    Number(String),
+    Code(String),
+    /// Holds or does not.
+    Verdict(bool, String),
+    /// Values with their intervals, drawn on a common scale and written out.
+    Spreads(Vec<Spread>),
+}
+
+impl Cell {
+    pub(crate) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    pub(crate) fn number(text: impl Into<String>) -> Self {
+        Self::Number(text.into())
+    }
+}
+
+/// A value with its interval, where it has one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spread {
+    pub(crate) value: f64,
+    pub(crate) interval: Option<[f64; 2]>,
+    pub(crate) ink: Ink,
+    pub(crate) scale: Scale,
+}
+
+/// What a value is drawn on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// From 0 to 100 %.
+    Share,
+    /// From -1 to 1.
+    Correlation,
+}
+
+impl Scale {
+    /// Both ends.
+    pub(crate) fn ends(self) -> (f64, f64) {
+        match self {
+            Self::Share => (0.0, 1.0),
+            Self::Correlation => (-1.0, 1.0),
+        }
+    }
+
+    /// The labels of start, middle and end.
+    pub(crate) fn labels(self) -> [&'static str; 3] {
+        match self {
+            Self::Share => ["0", "50", "100 %"],
+            Self::Correlation => ["-1", "0", "1"],
+        }
+    }
+}
+
+impl Spread {
+    /// In words.
+    pub(crate) fn text(&self) -> String {
+        match self.scale {
+            Scale::Share => format::rate(self.value, self.interval),
+            Scale::Correlation => format::correlation(self.value, self.interval),
+        }
+    }
+}
+
+/// Panels side by side that share a legend.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Figure {
+    pub(crate) panels: Vec<Panel>,
+    pub(crate) legend: Vec<Key>,
+    pub(crate) caption: String,
+}
+
+/// What a colour of a figure stands for.
+#[derive(Debug, Clone)]
+pub(crate) struct Key {
+    pub(crate) swatch: Swatch,
+    pub(crate) ink: Ink,
+    pub(crate) text: String,
+}
+
+/// How a key is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Swatch {
+    Line,
+    Dashes,
+    /// A shaded span.
+    Shade,
+}
+
+impl Key {
+    pub(crate) fn line(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Line, ink, text)
+    }
+
+    pub(crate) fn dashes(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Dashes, ink, text)
+    }
+
+    pub(crate) fn shade(ink: Ink, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Shade, ink, text)
+    }
+
+    /// The key of a line.
+    pub(crate) fn of(stroke: Stroke, ink: Ink, text: impl Into<String>) -> Self {
+        match stroke {
+            Stroke::Dashed => Self::dashes(ink, text),
+            Stroke::Solid | Stroke::Steps => Self::line(ink, text),
+        }
+    }
+
+    fn new(swatch: Swatch, ink: Ink, text: impl Into<String>) -> Self {
+        Self {
+            swatch,
+            ink,
+            text: text.into(),
+        }
+    }
+}

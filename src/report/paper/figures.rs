@@ -1,0 +1,284 @@
+//! The counterparts of the paper's figures.
+
+use super::PaperError;
+use super::flights::{Flights, Flown};
+use crate::campaign::Campaign;
+use crate::model::Shown;
+use crate::reference::Reference;
+use crate::report::page::document::Key;
+use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
+use crate::report::page::plot_grid::poster;
+use std::path::Path;
+
+/// The campaign of Figure 8.
+const WAYPOINTS: &str = include_str!("../../../campaigns/waypoints.toml");
+/// Points of a drawn path.
+const PATH_POINTS: u32 = 400;
+
+/// A figure in a file of its own.
+pub(super) struct Figure {
+    pub(super) file: String,
+    pub(super) title: String,
+    pub(super) caption: String,
+    pub(super) svg: String,
+}
+
+/// What a figure shows of every channel.
+struct View {
+    number: u32,
+    what: &'static str,
+    lines: &'static [Line],
+    unit: fn(&str) -> String,
+    flown: Flown,
+}
+
+/// A line of a figure.
+struct Line {
+    name: &'static str,
+    ink: Ink,
+    stroke: Stroke,
+    pick: fn(&Shown) -> f64,
+}
+
+const STATES: &[Line] = &[
+    Line {
+        name: "reference r",
+        ink: Ink::Truth,
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.r,
+    },
+    Line {
+        name: "state x",
+        ink: Ink::Series(0),
+        stroke: Stroke::Solid,
+        pick: |shown| shown.x,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.r + shown.e_hat,
+    },
+];
+const ACTUATOR_FAULT: &[Line] = &[
+    Line {
+        name: "actuator fault f1",
+        ink: Ink::Truth,
+        stroke: Stroke::Solid,
+        pick: |shown| shown.f1,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.f1_hat,
+    },
+];
+const SENSOR_FAULT: &[Line] = &[
+    Line {
+        name: "sensor fault f2",
+        ink: Ink::Truth,
+        stroke: Stroke::Solid,
+        pick: |shown| shown.f2,
+    },
+    Line {
+        name: "its estimate",
+        ink: Ink::Series(1),
+        stroke: Stroke::Dashed,
+        pick: |shown| shown.f2_hat,
+    },
+];
+const CONTROL: &[Line] = &[Line {
+    name: "control input u",
+    ink: Ink::Series(0),
+    stroke: Stroke::Solid,
+    pick: |shown| shown.u,
+}];
+
+/// All of them, in the paper's order.
+///
+/// # Errors
+/// If the campaign of Figure 8 is none.
+pub(super) fn all(uavs: &Flights, robots: &Flights) -> Result<Vec<Figure>, PaperError> {
+    let length: fn(&str) -> String = |unit| unit.to_string();
+    let acceleration: fn(&str) -> String = |unit| format!("{unit}/s²");
+    let rate: fn(&str) -> String = |unit| format!("{unit}/s");
+    let effort: fn(&str) -> String = |unit| {
+        if unit == "m" {
+            "N".into()
+        } else {
+            "N m".into()
+        }
+    };
+    let view = |number, what, lines, unit, flown| View {
+        number,
+        what,
+        lines,
+        unit,
+        flown,
+    };
+    let of_uavs = [
+        view(11, "states", STATES, length, Flown::Ftc),
+        view(
+            12,
+            "actuator fault",
+            ACTUATOR_FAULT,
+            acceleration,
+            Flown::Ftc,
+        ),
+        view(13, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
+        view(14, "control input", CONTROL, effort, Flown::Ftc),
+        view(19, "states under the PID", STATES, length, Flown::Pid),
+    ];
+    let of_robots = [
+        view(15, "states", STATES, length, Flown::Ftc),
+        view(
+            16,
+            "actuator fault",
+            ACTUATOR_FAULT,
+            acceleration,
+            Flown::Ftc,
+        ),
+        view(17, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
+        view(18, "control input", CONTROL, effort, Flown::Ftc),
+        view(20, "states under the PID", STATES, length, Flown::Pid),
+    ];
+    let mut figures: Vec<(u32, Figure)> = Vec::new();
+    for view in &of_uavs {
+        figures.push((view.number, of_view(uavs, view, "UAV")));
+    }
+    for view in &of_robots {
+        figures.push((view.number, of_view(robots, view, "robot")));
+    }
+    figures.push((8, paths()?));
+    figures.extend(walk(robots).map(|figure| (10, figure)));
+    figures.sort_by_key(|(number, _)| *number);
+    Ok(figures.into_iter().map(|(_, figure)| figure).collect())
+}
+
+fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
+    let campaign = &flights.campaign;
+    let panels: Vec<Panel> = campaign
+        .channels()
+        .iter()
+        .enumerate()
+        .map(|(channel, name)| {
+            let marks = view.lines.iter().map(|line| {
+                let points = flights.series(view.flown, channel, line.pick);
+                Mark::Line(points.0, line.ink, line.stroke)
+            });
+            Panel {
+                title: name.to_string(),
+                x: Axis {
+                    range: Some((0.0, flights.end_s())),
+                    ..Axis::new("time, s")
+                },
+                y: Axis::new((view.unit)(campaign.unit(channel))),
+                marks: marks.collect(),
+                ..Panel::default()
+            }
+        })
+        .collect();
+    let legend: Vec<Key> = view
+        .lines
+        .iter()
+        .map(|line| Key::of(line.stroke, line.ink, line.name))
+        .collect();
+    let title = format!("Figure {}: {agent}, {}", view.number, view.what);
+    let controller = match view.flown {
+        Flown::Pid => "PID",
+        Flown::Ftc | Flown::OnCourse => "FTC",
+    };
+    let mut caption = format!("First {agent} of the team under the {controller}.");
+    if let Some(lost_s) = flights.lost_s(view.flown) {
+        caption.push_str(&format!(" The flight diverges within {lost_s:.2} s."));
+    }
+    Figure {
+        file: format!("figure-{:02}.svg", view.number),
+        svg: poster(&title, &caption, &panels, 3, &legend),
+        title,
+        caption,
+    }
+}
+
+/// Figure 8: the planned paths of UAVs, from above and from the side.
+fn paths() -> Result<Figure, PaperError> {
+    let campaign = Campaign::parse(WAYPOINTS, Path::new("campaigns/waypoints.toml"))?;
+    let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
+    let view = |title: &str, labels: [&str; 2], axes: [usize; 2]| {
+        let of_agent = |agent: usize| {
+            let points = (0..=PATH_POINTS).map(|k| {
+                let t_s = end_s * f64::from(k) / f64::from(PATH_POINTS);
+                let at = campaign.reference.at(agent, t_s);
+                axes.map(|axis| at.get(axis).map_or(f64::NAN, |point| point.value))
+            });
+            let points = points.map(|[a, b]| (a, b)).collect();
+            Mark::Line(points, Ink::Series(agent), Stroke::Solid)
+        };
+        Panel {
+            title: title.into(),
+            x: Axis::new(labels[0]),
+            y: Axis::new(labels[1]),
+            marks: (0..campaign.team).map(of_agent).collect(),
+            equal: true,
+            ..Panel::default()
+        }
+    };
+    let panels = [
+        view("from above", ["x, m", "y, m"], [0, 1]),
+        view("from the side", ["x, m", "z, m"], [0, 2]),
+    ];
+    let legend: Vec<Key> = (0..campaign.team)
+        .map(|agent| Key::line(Ink::Series(agent), format!("UAV {agent}")))
+        .collect();
+    let title = "Figure 8: planned flight".to_string();
+    let caption =
+        "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
+            .to_string();
+    Ok(Figure {
+        file: "figure-08.svg".into(),
+        svg: poster(&title, &caption, &panels, 2, &legend),
+        title,
+        caption,
+    })
+}
+
+/// Figure 10: the planned walk of a robot from above.
+fn walk(robots: &Flights) -> Option<Figure> {
+    let Reference::Walk(walks) = &robots.campaign.reference else {
+        return None;
+    };
+    let walk = &walks.first()?.walk;
+    let com = walk.com.states.iter().map(|[x, y]| (x[0], y[0])).collect();
+    let zmp = walk.com.zmp_m.iter().map(|[x, y]| (*x, *y)).collect();
+    let feet = walk.feet.footholds().into_iter();
+    let feet = feet.map(|foothold| {
+        let [x, y] = foothold.placement.position_m;
+        (x, y)
+    });
+    let panel = Panel {
+        title: "from above".into(),
+        x: Axis::new("x, m"),
+        y: Axis::new("y, m"),
+        marks: vec![
+            Mark::Line(zmp, Ink::Series(1), Stroke::Solid),
+            Mark::Line(com, Ink::Series(0), Stroke::Solid),
+            Mark::Dots(feet.collect(), Ink::Truth),
+        ],
+        ..Panel::default()
+    };
+    let legend = [
+        Key::line(Ink::Series(0), "centre of mass"),
+        Key::line(Ink::Series(1), "zero moment point"),
+        Key::line(Ink::Truth, "footholds (ankles)"),
+    ];
+    let title = "Figure 10: planned walk".to_string();
+    let caption =
+        "Straight walk of campaigns/paper-robots.toml; y is drawn larger than x.".to_string();
+    Some(Figure {
+        file: "figure-10.svg".into(),
+        svg: poster(&title, &caption, &[panel], 1, &legend),
+        title,
+        caption,
+    })
+}

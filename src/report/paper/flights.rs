@@ -1,0 +1,234 @@
+//! The flights that figures and claims are read from, and what is met in them.
+
+use super::PaperError;
+use super::measures::Series;
+use crate::backend::cpu::{Cpu, Precision};
+use crate::campaign::{Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter};
+use crate::controllers::GainSet;
+use crate::draw::draw;
+use crate::model::Shown;
+use crate::model::episode::Snapshot;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Steps between two samples: 10 ms.
+const EVERY: u32 = 10;
+
+/// A flight of a campaign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Flown {
+    /// Under the FTC.
+    Ftc,
+    /// Under the FTC, but without initial errors.
+    OnCourse,
+    /// Under the PID.
+    Pid,
+}
+
+impl Flown {
+    /// What the flight is called in a sentence.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Ftc => "the FTC's flight",
+            Self::OnCourse => "the FTC's flight without initial errors",
+            Self::Pid => "the PID's flight",
+        }
+    }
+}
+
+/// The first agent of a campaign under the FTC, with and without its initial errors, and under the PID.
+#[derive(Debug)]
+pub struct Flights {
+    pub(super) campaign: Campaign,
+    pub(super) met: Met,
+    ftc: Vec<Snapshot>,
+    on_course: Vec<Snapshot>,
+    pid: Vec<Snapshot>,
+}
+
+impl Flights {
+    /// Flies the first episode of a campaign in double precision; `path` is where its text is from.
+    ///
+    /// # Errors
+    /// If the text is no campaign, if it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
+    /// and one smoothed square wave, the same on all channels.
+    pub fn fly(text: &str, path: &Path) -> Result<Self, PaperError> {
+        let mut campaign = Campaign::parse(text, path)?;
+        campaign.controllers = [FTC, PID].map(Into::into).to_vec();
+        let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.into() })?;
+        let gains = GainSet::obtain(&campaign)?;
+        let trace = |campaign: &Campaign, controller: usize| {
+            let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+            cpu.trace(0, controller, EVERY).1
+        };
+        let on_course = without_initial_errors(&campaign);
+        let (ftc, (on_course, pid)) = rayon::join(
+            || trace(&campaign, 0),
+            || rayon::join(|| trace(&on_course, 0), || trace(&campaign, 1)),
+        );
+        Ok(Self {
+            campaign,
+            met,
+            ftc,
+            on_course,
+            pid,
+        })
+    }
+
+    fn snapshots(&self, flown: Flown) -> &[Snapshot] {
+        match flown {
+            Flown::Ftc => &self.ftc,
+            Flown::OnCourse => &self.on_course,
+            Flown::Pid => &self.pid,
+        }
+    }
+
+    /// A quantity of a channel of the first agent over time.
+    pub(super) fn series(
+        &self,
+        flown: Flown,
+        channel: usize,
+        pick: impl Fn(&Shown) -> f64,
+    ) -> Series {
+        let of_channel = |snapshot: &Snapshot| {
+            let shown = snapshot.agents.first()?.get(channel)?;
+            Some((self.time_s(snapshot), pick(shown)))
+        };
+        Series(
+            self.snapshots(flown)
+                .iter()
+                .filter_map(of_channel)
+                .collect(),
+        )
+    }
+
+    /// When the first agent's flight was no longer finite, s.
+    pub(super) fn lost_s(&self, flown: Flown) -> Option<f64> {
+        let lost = |snapshot: &&Snapshot| {
+            let mut shown = snapshot.agents.first().into_iter().flatten();
+            shown.any(|shown| !is_finite(shown))
+        };
+        let snapshot = self.snapshots(flown).iter().find(lost)?;
+        Some(self.time_s(snapshot))
+    }
+
+    fn time_s(&self, snapshot: &Snapshot) -> f64 {
+        f64::from(snapshot.step) * self.campaign.time.step_s
+    }
+
+    /// How long a flight is, s.
+    pub(super) fn end_s(&self) -> f64 {
+        f64::from(self.campaign.time.steps) * self.campaign.time.step_s
+    }
+
+    /// When the sensor fault changes its sign after `from_s` and has half a period left, s.
+    pub(super) fn jumps_s(&self, from_s: f64) -> Vec<f64> {
+        let half_s = self.met.half_period_s();
+        // The sign of tanh(sin(2 pi t/T + phase)/tau) changes where the sine has a zero.
+        let first_s = (-self.met.phase_rad / TAU * self.met.period_s).rem_euclid(half_s);
+        let jumps = (0..self.campaign.time.steps).map(|k| first_s + f64::from(k) * half_s);
+        jumps
+            .skip_while(|jump_s| *jump_s <= from_s)
+            .take_while(|jump_s| jump_s + half_s <= self.end_s() + 1e-9)
+            .collect()
+    }
+}
+
+fn is_finite(shown: &Shown) -> bool {
+    let Shown {
+        r,
+        x,
+        e,
+        e_rate,
+        e_hat,
+        f1,
+        f1_hat,
+        f2,
+        f2_hat,
+        u,
+    } = *shown;
+    let all = [r, x, e, e_rate, e_hat, f1, f1_hat, f2, f2_hat, u];
+    all.iter().all(|value| value.is_finite())
+}
+
+/// The same campaign from the reference itself.
+fn without_initial_errors(campaign: &Campaign) -> Campaign {
+    let mut campaign = campaign.clone();
+    let initial = &mut campaign.initial;
+    for drawn in [
+        &mut initial.error,
+        &mut initial.error_rate,
+        &mut initial.error_integral,
+    ] {
+        drawn.distributions.fill(Distribution::Constant(0.0));
+    }
+    campaign
+}
+
+/// What the first agent meets.
+#[derive(Debug)]
+pub(super) struct Met {
+    /// Initial errors `[channel]`, m or rad.
+    pub(super) errors: Vec<f64>,
+    /// Amplitude of the disturbance on every channel, N or N m.
+    pub(super) force: f64,
+    /// Its frequency, rad/s.
+    pub(super) force_rad_s: f64,
+    /// Amplitude of the sensor fault on every channel, m/s or rad/s.
+    pub(super) fault: f64,
+    /// Its period, s.
+    pub(super) period_s: f64,
+    /// Its phase at t = 0, rad.
+    phase_rad: f64,
+    /// True mass over modelled mass.
+    pub(super) mass_scale: f64,
+}
+
+impl Met {
+    fn of(campaign: &Campaign) -> Option<Self> {
+        let agent = draw(campaign, 0).agents.into_iter().next()?;
+        let ([disturbance], [fault]) = (&*campaign.disturbances, &*campaign.faults) else {
+            return None;
+        };
+        let (sine, square) = (DisturbanceKind::Sine, FaultKind::SmoothedSquare);
+        let struck = agent.faults.first()?;
+        if disturbance.kind != sine
+            || fault.kind != square
+            || !struck.strikes.iter().all(|strikes| *strikes)
+        {
+            return None;
+        }
+        let of_sine = |name| common(sine.parameters(), agent.disturbances.first()?, name);
+        let of_square = |name| common(square.parameters(), &struck.parameters, name);
+        Some(Self {
+            errors: agent.error.clone(),
+            force: of_sine("amplitude")?,
+            force_rad_s: of_sine("frequency_rad_s")?,
+            fault: of_square("amplitude")?,
+            period_s: of_square("period_s")?,
+            phase_rad: of_square("phase_rad")?,
+            mass_scale: agent.mass_scale,
+        })
+    }
+
+    /// Time between two jumps of the sensor fault, s.
+    pub(super) fn half_period_s(&self) -> f64 {
+        0.5 * self.period_s
+    }
+
+    /// Frequency of the sensor fault, rad/s.
+    pub(super) fn fault_rad_s(&self) -> f64 {
+        TAU / self.period_s
+    }
+}
+
+/// The value that a parameter has on all channels.
+fn common(parameters: &[Parameter], drawn: &[Vec<f64>], name: &str) -> Option<f64> {
+    let index = parameters.iter().position(|own| own.name == name)?;
+    let values = drawn.get(index)?;
+    let first = *values.first()?;
+    values
+        .iter()
+        .all(|value| value.to_bits() == first.to_bits())
+        .then_some(first)
+}

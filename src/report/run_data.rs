@@ -1,0 +1,133 @@
+//! All that the directory of a run holds: what a report is made of.
+
+use super::page::document::Key;
+use super::page::plot::Ink;
+use crate::campaign::{Campaign, CampaignError};
+use crate::controllers::{GainSet, GainsError};
+use crate::run::error::OutputError;
+use crate::run::manifest::Manifest;
+use crate::run::table_reader::Sheet;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why there is no report.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// The directory holds no run, or cannot be written.
+    #[error(transparent)]
+    Run(#[from] OutputError),
+    /// The run's campaign cannot be read any more.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    /// The run's gains cannot be read any more.
+    #[error(transparent)]
+    Gains(#[from] GainsError),
+}
+
+/// A run, read back from its directory.
+pub(crate) struct Evidence {
+    pub(crate) dir: PathBuf,
+    pub(crate) manifest: Manifest,
+    pub(crate) campaign: Campaign,
+    pub(crate) gains: GainSet,
+    /// Outcomes and draws, by episode, controller and agent.
+    pub(crate) episodes: Sheet,
+    /// RMS errors, by episode, controller, agent and channel.
+    pub(crate) channels: Sheet,
+    pub(crate) summary: Sheet,
+    pub(crate) comparison: Sheet,
+    pub(crate) screening: Sheet,
+    pub(crate) ranking: Sheet,
+    pub(crate) worst: Sheet,
+}
+
+impl Evidence {
+    /// Reads a directory. Tables that a campaign does not have are empty.
+    ///
+    /// # Errors
+    /// If there is no run, or a file of it is not what it should be.
+    pub(crate) fn read(dir: &Path) -> Result<Self, ReportError> {
+        let manifest = Manifest::read(dir)?;
+        let campaign = manifest.campaign()?;
+        let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
+        let all = |name: &str| Sheet::read(dir, name, |_| true).map(Option::unwrap_or_default);
+        let needed = |name: &str, wanted: fn(&str) -> bool| {
+            Sheet::read(dir, name, wanted)?.ok_or_else(|| OutputError::NoRun {
+                path: dir.to_path_buf(),
+                reason: format!("{name}.parquet is missing"),
+            })
+        };
+        let of_channels =
+            |name: &str| ["episode", "controller", "agent", "channel", "rmse"].contains(&name);
+        Ok(Self {
+            episodes: needed("episodes", |_| true)?,
+            channels: needed("channels", of_channels)?,
+            summary: needed("summary", |_| true)?,
+            comparison: all("comparison")?,
+            screening: all("screening")?,
+            ranking: all("ranking")?,
+            worst: all("worst")?,
+            dir: dir.to_path_buf(),
+            manifest,
+            campaign,
+            gains,
+        })
+    }
+
+    /// The controllers with their colours.
+    pub(crate) fn legend(&self) -> Vec<Key> {
+        let names = self.campaign.controllers.iter().enumerate();
+        names
+            .map(|(index, name)| Key::line(Ink::Series(index), name))
+            .collect()
+    }
+
+    /// The RMS over the team of a column for each episode under each controller, `[controller][episode]`: infinite where an
+    /// agent diverged. Rows that `wanted` refuses are left out.
+    pub(crate) fn of_teams(
+        &self,
+        sheet: &Sheet,
+        column: &str,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Vec<Vec<f64>> {
+        let episodes = self.manifest.episodes as usize;
+        let team = self.campaign.team as f64;
+        let mut squares = vec![vec![0.0; episodes]; self.campaign.controllers.len()];
+        for row in (0..sheet.rows()).filter(|&row| wanted(row)) {
+            let controller = self.controller(sheet.text(row, "controller"));
+            let Some(of_controller) = controller.and_then(|index| squares.get_mut(index)) else {
+                continue;
+            };
+            let value = sheet.real(row, column);
+            // An empty cell is a diverged agent.
+            let value = if value.is_nan() { f64::INFINITY } else { value };
+            if let Some(sum) = of_controller.get_mut(whole(sheet.real(row, "episode"))) {
+                *sum += value * value / team;
+            }
+        }
+        for values in &mut squares {
+            values.iter_mut().for_each(|value| *value = value.sqrt());
+        }
+        squares
+    }
+
+    /// The place of a controller in the campaign.
+    pub(crate) fn controller(&self, name: &str) -> Option<usize> {
+        let mut names = self.campaign.controllers.iter();
+        names.position(|own| **own == *name)
+    }
+}
+
+/// A count that was read as a number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is not a count becomes the largest one, which no table has"
+)]
+pub(crate) fn whole(value: f64) -> usize {
+    if value >= 0.0 {
+        value as usize
+    } else {
+        usize::MAX
+    }
+}

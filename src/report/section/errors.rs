@@ -1,0 +1,242 @@
+//! How closely the controllers follow, pair by pair and as distributions.
+
+use crate::agent::ChannelRole;
+use crate::campaign::ALL;
+use crate::report::page::document::{Block, Cell, Figure, Grid, Section};
+use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
+use crate::report::run_data::Evidence;
+use crate::util::format;
+
+/// Points of a drawn distribution: more cannot be told apart.
+const MOST_POINTS: usize = 300;
+
+/// The comparison of every pair.
+pub(crate) fn pairs(evidence: &Evidence) -> Section {
+    let sheet = &evidence.comparison;
+    if sheet.rows() == 0 {
+        let text = "One controller has nothing to be compared with.";
+        return Section::new("Pair by pair", vec![Block::text(text)]);
+    }
+    let replicates = evidence.campaign.sampling.replicates().is_some();
+    let known = (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
+    let difference = match replicates {
+        true => "failure_rate_difference_replicates",
+        false => "failure_rate_difference",
+    };
+    let (log_ratio, interval) = match (replicates, known) {
+        (true, true) => (
+            "log_ratio_replicates",
+            "with its 95 % interval (Student's t over the replicates)",
+        ),
+        (true, false) => (
+            "log_ratio",
+            "without an interval, since the replicates are too few",
+        ),
+        (false, _) => ("log_ratio", "with its 95 % interval (BCa)"),
+    };
+    let mut failures = Grid::new([
+        "pair",
+        "only the first fails",
+        "only the second",
+        "both",
+        "difference of failure rates, points",
+        "McNemar mid-p",
+        "after Holm",
+    ]);
+    let mut errors = Grid::new([
+        "pair",
+        "channel or group",
+        "the first's RMS error is smaller by a factor of",
+        "it wins",
+    ]);
+    let mut folded = errors.clone();
+    let mut last = String::new();
+    for row in sheet.find(&[("stratum", ALL)]) {
+        let pair = format!("{} against {}", sheet.text(row, "a"), sheet.text(row, "b"));
+        let of = |name: &str| sheet.real(row, name);
+        if pair != last {
+            failures.rows.push(vec![
+                Cell::text(&*pair),
+                Cell::number(format!("{:.0}", of("only_a_failed"))),
+                Cell::number(format!("{:.0}", of("only_b_failed"))),
+                Cell::number(format!("{:.0}", of("both_failed"))),
+                Cell::number(format::points(
+                    of("failure_rate_difference"),
+                    of(&format!("{difference}_lower")),
+                    of(&format!("{difference}_upper")),
+                )),
+                Cell::number(format::p_value(of("mcnemar_mid_p"))),
+                Cell::number(format::p_value(of("mcnemar_mid_p_holm"))),
+            ]);
+            last.clone_from(&pair);
+        }
+        let factor = |side: &str| of(&format!("{log_ratio}{side}")).exp();
+        let cells = vec![
+            Cell::text(&*pair),
+            Cell::text(sheet.text(row, "name")),
+            Cell::number(format::measured(
+                factor(""),
+                factor("_lower"),
+                factor("_upper"),
+            )),
+            Cell::number(format::rate(of("win_rate"), None)),
+        ];
+        if sheet.text(row, "scope") == "group" {
+            errors.rows.push(cells);
+        } else {
+            folded.rows.push(cells);
+        }
+    }
+    let explained = format!(
+        "The same episodes under both controllers. Factor: median over the episodes of the ratio of RMS errors, averaged over \
+         the team in the logarithm, {interval}; above 1 the first is closer. A diverged episode counts as \
+         infinitely bad, a pair of two as a tie."
+    );
+    Section::new(
+        "Pair by pair",
+        vec![
+            Block::Grid(failures),
+            Block::Text(explained),
+            Block::Grid(errors),
+            Block::Folded("Every channel".into(), vec![Block::Grid(folded)]),
+        ],
+    )
+}
+
+/// The distributions of the RMS error.
+pub(crate) fn distributions(evidence: &Evidence) -> Section {
+    let roles = evidence.campaign.channel_groups();
+    let max_rmse = &evidence.campaign.verdict.max_rmse;
+    let limit = |channel: usize| max_rmse.get(channel).copied().unwrap_or(f64::INFINITY);
+    let groups = roles.iter().map(|group| {
+        let column = format!("rmse_{}", group.role.name());
+        let values = evidence.of_teams(&evidence.episodes, &column, |_| true);
+        ecdf(
+            group.role.name(),
+            group.role,
+            limit(group.channels.start),
+            &values,
+        )
+    });
+    let names = evidence.campaign.channels();
+    let channels = roles.iter().flat_map(|group| {
+        let own = names.get(group.channels.clone()).unwrap_or_default();
+        own.iter().enumerate().map(move |(place, name)| {
+            let sheet = &evidence.channels;
+            let of_channel = |row: usize| sheet.text(row, "channel") == &**name;
+            ecdf(
+                name,
+                group.role,
+                limit(group.channels.start + place),
+                &evidence.of_teams(sheet, "rmse", of_channel),
+            )
+        })
+    });
+    let figure = |panels: Vec<Panel>, of: &str| Figure {
+        panels,
+        legend: evidence.legend(),
+        caption: format!(
+            "Share of the episodes whose RMS error over the team, {of}, from settle_s on, is at most the value. What \
+             diverges or lies beyond the frame is missing: its curve ends below 1."
+        ),
+    };
+    let table = Block::Grid(quantiles(evidence));
+    let blocks = match evidence.manifest.episodes {
+        0 | 1 => vec![table],
+        _ => vec![
+            Block::Figure(figure(groups.collect(), "by channel group")),
+            table,
+            Block::Folded(
+                "Every channel".into(),
+                vec![Block::Figure(figure(channels.collect(), "by channel"))],
+            ),
+        ],
+    };
+    Section::new("Distribution of the errors", blocks)
+}
+
+/// Errors are drawn up to so many times the largest median, or the limit of the RMS error if that is more: those of flights that
+/// are about to diverge would leave no room for the others.
+const FRAME: f64 = 20.0;
+
+/// The empirical distribution of values by controller.
+fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Panel {
+    let medians = values.iter().map(|values| {
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    });
+    let largest = medians
+        .filter(|median| median.is_finite())
+        .fold(0.0, f64::max);
+    let limit = if limit.is_finite() { limit } else { 0.0 };
+    let frame = (FRAME * largest).max(2.0 * limit);
+    let marks = values.iter().enumerate().map(|(index, values)| {
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        let n = sorted.len().max(1);
+        let stride = n.div_ceil(MOST_POINTS);
+        let within = sorted.iter().take_while(|value| **value <= frame).count();
+        // The last that is within the frame tells how many are.
+        let kept = (0..within).filter(|place| place % stride == 0 || place + 1 == within);
+        let points = kept.map(|place| (sorted[place], (place + 1) as f64 / n as f64));
+        // The curve goes on as a line to the end of the frame, beyond which the rest lies.
+        let end = points
+            .clone()
+            .next_back()
+            .filter(|_| within < n)
+            .map(|(_, share)| (frame, share));
+        let points = points.chain(end);
+        Mark::Line(points.collect(), Ink::Series(index), Stroke::Steps)
+    });
+    Panel {
+        title: title.into(),
+        x: Axis {
+            logarithmic: true,
+            ..Axis::new(format!("RMS error, {}", role.unit()))
+        },
+        y: Axis {
+            // A little room below, so that the labels of both axes do not meet in the corner.
+            range: Some((-0.03, 1.03)),
+            ..Axis::new("share of episodes")
+        },
+        marks: marks.collect(),
+        ..Panel::default()
+    }
+}
+
+fn quantiles(evidence: &Evidence) -> Grid {
+    let sheet = &evidence.summary;
+    let mut grid = Grid::new([
+        "controller",
+        "error",
+        "median [95 %]",
+        "95th percentile [95 %]",
+        "99th percentile [95 %]",
+    ]);
+    for row in sheet.find(&[("stratum", ALL)]) {
+        let name = match sheet.text(row, "metric") {
+            "rmse" => "RMS",
+            _ => "largest",
+        };
+        let group = sheet.text(row, "group");
+        let roles = evidence.campaign.channel_groups();
+        let role = roles.iter().find(|own| own.role.name() == group);
+        let Some(role) = role else { continue };
+        let cell = |q: &str| {
+            Cell::number(format::measured(
+                sheet.real(row, q),
+                sheet.real(row, &format!("{q}_lower")),
+                sheet.real(row, &format!("{q}_upper")),
+            ))
+        };
+        grid.rows.push(vec![
+            Cell::text(sheet.text(row, "controller")),
+            Cell::text(format!("{name}, {group}, {}", role.role.unit())),
+            cell("q50"),
+            cell("q95"),
+            cell("q99"),
+        ]);
+    }
+    grid
+}

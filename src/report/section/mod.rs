@@ -1,0 +1,8 @@
+//! What a report says, section by section.
+
+pub(crate) mod conditions;
+pub(crate) mod errors;
+pub(crate) mod failures;
+pub(crate) mod gains;
+pub(crate) mod provenance;
+pub(crate) mod strata;

@@ -1,0 +1,94 @@
+//! What it takes to do the run again, and what it was done with.
+
+use crate::report::page::document::{Block, Cell, Grid, Section};
+use crate::report::run_data::Evidence;
+use crate::simulation::Leg;
+use crate::simulation::cross_check::CrossCheck;
+
+/// Version, seed, machine, times, cross-check, and the campaign's text.
+pub(crate) fn section(evidence: &Evidence) -> Section {
+    let manifest = &evidence.manifest;
+    let mut grid = Grid::new(["what", "value"]);
+    let mut add = |name: &str, value: String| {
+        grid.rows.push(vec![Cell::text(name), Cell::text(value)]);
+    };
+    let revision = manifest.git_revision.as_deref();
+    add(
+        "program",
+        match revision {
+            Some(revision) => format!("urts-mc {}, revision {revision}", manifest.version),
+            None => format!("urts-mc {}", manifest.version),
+        },
+    );
+    add("campaign", manifest.campaign_path.clone());
+    add("BLAKE3 of its text", manifest.campaign_blake3.clone());
+    add("seed", manifest.seed.to_string());
+    add(
+        "episodes",
+        format!(
+            "{} of {} asked for",
+            manifest.episodes, manifest.episodes_asked
+        ),
+    );
+    for leg in &manifest.legs {
+        add("flown on", engine(leg, manifest.legs.len() > 1));
+    }
+    add(
+        "number format",
+        format!("{:?}", manifest.precision).to_lowercase(),
+    );
+    for note in &manifest.notes {
+        add("note", note.clone());
+    }
+    if let Some(check) = &manifest.cross_check {
+        add(
+            "cross-check with f64 on the CPU",
+            format!(
+                "{} episodes: |e| within {:.1e}, RMS error within {:.1e} relative ({} flights compared), {} verdicts differ{}",
+                check.episodes.len(),
+                check.largest_error_difference,
+                check.largest_rmse_difference,
+                check.compared,
+                check.verdicts_differ,
+                match check.sensitive {
+                    0 => String::new(),
+                    count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
+                }
+            ),
+        );
+    }
+    let times = manifest.times;
+    add(
+        "wall-clock times",
+        format!(
+            "synthesis {:.1} s, flying {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s",
+            times.synthesis_s,
+            times.loop_s,
+            times.cross_check_s,
+            times.statistics_s,
+            times.writing_s
+        ),
+    );
+    Section::new(
+        "Provenance",
+        vec![
+            Block::Grid(grid),
+            Block::Folded(
+                "The campaign".into(),
+                vec![Block::Code(manifest.campaign.clone())],
+            ),
+        ],
+    )
+}
+
+fn engine(leg: &Leg, several: bool) -> String {
+    let Leg {
+        engine,
+        episodes,
+        first,
+    } = leg;
+    match several {
+        true => format!("{engine}: {episodes} episodes from number {first}"),
+        false => engine.to_string(),
+    }
+}

@@ -1,0 +1,56 @@
+//! How long a campaign would fly, roughly.
+
+use crate::agent::Agent;
+use crate::campaign::Campaign;
+
+/// Nanoseconds that a step of an agent takes a core with 16 lanes in single precision.
+struct Cost {
+    /// With neither disturbances nor faults.
+    bare: f64,
+    /// More for each disturbance and each fault: whether it is there is asked in every step.
+    signal: f64,
+}
+
+/// Measured on a core of an AMD EPYC: UAVs with 1 to 4 disturbances and 0 to 34 faults, from 37 to 750 ns. What a signal takes
+/// depends on its kind, and on how many of the lanes have it: that is within a factor of two of all of these.
+const UAV: Cost = Cost {
+    bare: 22.0,
+    signal: 12.0,
+};
+/// The same of robots with 2 and 33 signals: 190 to 290 ns and 1030 ns.
+const BIPED: Cost = Cost {
+    bare: 180.0,
+    signal: 30.0,
+};
+
+/// Steps of single agents in a campaign.
+pub(super) fn steps(campaign: &Campaign) -> f64 {
+    let flights = campaign.team * campaign.controllers.len();
+    f64::from(campaign.time.steps) * f64::from(campaign.episodes) * flights as f64
+}
+
+/// How long they take on one core with 16 lanes, s.
+pub(super) fn seconds(campaign: &Campaign) -> f64 {
+    let cost = match campaign.agent {
+        Agent::Uav(_) => UAV,
+        Agent::Biped(_) => BIPED,
+    };
+    let signals = campaign.disturbances.len() + campaign.faults.len();
+    1e-9 * steps(campaign) * (cost.bare + cost.signal * signals as f64)
+}
+
+/// A length of time in the unit that people would use.
+pub(super) fn lasting(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 4] = [
+        (86_400.0, "days"),
+        (3_600.0, "hours"),
+        (60.0, "minutes"),
+        (1.0, "s"),
+    ];
+    // Two of a unit, so that there is no plural to ask for.
+    let unit = UNITS.iter().find(|(unit, _)| seconds >= 2.0 * unit);
+    match unit {
+        Some((unit, name)) => format!("{:.0} {name}", seconds / unit),
+        None => "1 s".to_string(),
+    }
+}

@@ -1,0 +1,417 @@
+//! What a run found, for people.
+
+use super::conclusion::{in_short, requirements};
+use super::screening::strata;
+use super::style::heading;
+use super::{attenuation, line};
+use crate::agent::ChannelRole;
+use crate::campaign::{ALL, Campaign};
+use crate::draw::quantities::title;
+use crate::report::notes::caveats;
+use crate::results::sensitivity::RankedCondition;
+use crate::results::{FailureRate, Measured, PairedComparison, Ratio};
+use crate::run::Findings;
+use crate::run::replay::command;
+use crate::simulation::cross_check::CrossCheck;
+use crate::statistics::Interval;
+use crate::util::format::{digits, rounded_up};
+use std::path::Path;
+
+/// Channels that are shown one by one.
+const MOST_CHANNELS: usize = 6;
+
+/// Conditions that are shown of each target.
+const STRONGEST: usize = 3;
+/// The p-value, corrected for all conditions of a target, at or below which an effect is shown.
+const SURE: f64 = 0.05;
+
+/// The findings of a run at a glance.
+pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
+    let mut text = String::new();
+    let manifest = &findings.manifest;
+    let precision = format!("{:?}", manifest.precision).to_lowercase();
+    let engines = manifest.legs.iter().map(|leg| leg.engine.to_string());
+    let engines: Vec<String> = engines.collect();
+    line(
+        &mut text,
+        &format!(
+            "{}: {} x {} {}, seed {}, {precision} on {}, {:.1} s of flying",
+            heading(&campaign.name),
+            counted(manifest.episodes),
+            campaign.team,
+            campaign.agent.noun(campaign.team),
+            campaign.seed,
+            engines.join(", then on "),
+            manifest.times.loop_s
+        ),
+    );
+    for note in &manifest.notes {
+        line(&mut text, &format!("note: {note}"));
+    }
+    if let Some(check) = &manifest.cross_check {
+        line(&mut text, &cross_check(check, campaign.controllers.len()));
+        text.push_str(&attenuation::groups(&check.attenuation));
+    }
+    line(
+        &mut text,
+        &match campaign.team {
+            1 => format!("\n{}", heading("failures")),
+            _ => format!(
+                "\n{} (an episode fails with any of its {})",
+                heading("failures"),
+                campaign.agent.plural()
+            ),
+        },
+    );
+    line(
+        &mut text,
+        &format!(
+            "  {:<12} {:>14}  {:>8}  {:<19} {}",
+            "controller",
+            "failed",
+            "rate",
+            kind_of_interval(campaign),
+            "95 % sure below"
+        ),
+    );
+    for failures in rates(findings) {
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {:>14}  {:>7.2}%  {:<19} {}{}",
+                failures.controller,
+                format!("{} of {}", failures.failed(), failures.n),
+                100.0 * failures.rate(),
+                failures
+                    .interval()
+                    .map_or("-".to_string(), |interval| format!(
+                        "{:.2} .. {:.2}%",
+                        100.0 * interval.lower,
+                        100.0 * interval.upper
+                    )),
+                failures.upper_95.map_or("-".to_string(), |upper| format!(
+                    "{}%",
+                    rounded_up(100.0 * upper, 2)
+                )),
+                if failures.diverged > 0 {
+                    format!("  ({} diverged)", failures.diverged)
+                } else {
+                    String::new()
+                },
+            ),
+        );
+    }
+    for caveat in caveats(campaign, manifest) {
+        line(&mut text, &caveat);
+    }
+    text.push_str(&strata(campaign, findings));
+    line(
+        &mut text,
+        &format!(
+            "\n{}, median [95 % interval] and 95th percentile over the episodes",
+            heading("RMS error from settle_s on")
+        ),
+    );
+    let roles: Vec<ChannelRole> = campaign
+        .channel_groups()
+        .iter()
+        .map(|group| group.role)
+        .collect();
+    let mut head = format!("  {:<12}", "controller");
+    for role in &roles {
+        let title = format!("{}, {}", role.name(), role.unit());
+        head.push_str(&format!(" {title:>34} "));
+    }
+    line(&mut text, head.trim_end());
+    for name in &campaign.controllers {
+        let cell = |group: &str| {
+            let row = findings.summary.iter().find(|row| {
+                row.failures.controller == *name
+                    && *row.failures.stratum == *ALL
+                    && row.metric == "rmse"
+                    && row.group == group
+            });
+            row.map_or(String::new(), |row| {
+                let number = |value: f64| digits(value, 3);
+                let value = |k: usize| row.quantiles[k].1.map_or("-".to_string(), number);
+                let interval = row.quantiles[0].2.map_or(String::new(), |i| {
+                    format!(" [{}, {}]", number(i.lower), number(i.upper))
+                });
+                format!("{}{interval}, {}", value(0), value(1))
+            })
+        };
+        let mut cells = format!("  {name:<12}");
+        for role in &roles {
+            cells.push_str(&format!(" {:>34} ", cell(role.name())));
+        }
+        line(&mut text, cells.trim_end());
+    }
+    if !findings.comparisons.is_empty() {
+        line(
+            &mut text,
+            &format!(
+                "\n{}: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
+                heading("pair by pair"),
+                if campaign.sampling.replicates().is_some() {
+                    "t over replicates"
+                } else {
+                    "BCa"
+                }
+            ),
+        );
+    }
+    let names = campaign.channels().iter().map(|name| name.len());
+    let width = names.max().unwrap_or(0).max(8);
+    let of_all = findings
+        .comparisons
+        .iter()
+        .filter(|own| *own.stratum == *ALL);
+    for comparison in of_all {
+        line(
+            &mut text,
+            &format!("  {} against {}", comparison.a, comparison.b),
+        );
+        let (shown, left_out) = worth_showing(&comparison.ratios);
+        for ratio in shown {
+            line(
+                &mut text,
+                &format!("    {:<width$}  {}", ratio.name, ratio_text(ratio)),
+            );
+        }
+        if left_out > 0 {
+            let rest = "between these two; comparison.csv has them all";
+            line(
+                &mut text,
+                &format!("    {left_out} more channels lie {rest}"),
+            );
+        }
+        line(
+            &mut text,
+            &format!("    {:<width$}  {}", "failures", failures_text(comparison)),
+        );
+        let diverged = comparison.ratios.first().map(|ratio| ratio.diverged);
+        let diverged: u64 = diverged.iter().flatten().sum();
+        if diverged > 0 {
+            line(
+                &mut text,
+                &format!("    a diverged episode counts as infinitely bad: {diverged} pairs"),
+            );
+        }
+    }
+    text.push_str(&what_matters(campaign, findings));
+    text.push_str(&worst(findings, out));
+    text.push_str(&in_short(campaign, findings));
+    text.push_str(&requirements(&manifest.requirements));
+    let times = manifest.times;
+    line(
+        &mut text,
+        &format!(
+            "\nwritten to {} (synthesis {:.1} s, flying {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
+            out.display(),
+            times.synthesis_s,
+            times.loop_s,
+            times.cross_check_s,
+            times.statistics_s,
+            times.writing_s
+        ),
+    );
+    text
+}
+
+/// So many episodes.
+fn counted(episodes: u32) -> String {
+    match episodes {
+        1 => "1 episode".to_string(),
+        many => format!("{many} episodes"),
+    }
+}
+
+fn cross_check(check: &CrossCheck, controllers: usize) -> String {
+    let pairs = check.episodes.len() * controllers;
+    let differences = if check.compared == 0 {
+        format!("no errors compared (all {pairs} flights fail or saturate)")
+    } else {
+        format!(
+            "|e| within {:.1e}, RMS error within {:.1e} relative ({} of {pairs} flights neither fail nor saturate)",
+            check.largest_error_difference, check.largest_rmse_difference, check.compared,
+        )
+    };
+    let sensitive = match check.sensitive {
+        0 => String::new(),
+        count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
+    };
+    format!(
+        "cross-check of {} episodes with f64 on the CPU: {differences}, {} of {pairs} verdicts differ{sensitive}",
+        check.episodes.len(),
+        check.verdicts_differ,
+    )
+}
+
+/// What raises failures and errors of each controller, as far as it is sure.
+fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
+    let sure: Vec<&RankedCondition> = findings
+        .ranking
+        .iter()
+        .filter(|ranked| ranked.target.kind != "log_ratio")
+        .filter(|ranked| ranked.p_holm.is_some_and(|p_holm| p_holm <= SURE))
+        .collect();
+    let mut text = String::new();
+    if sure.is_empty() {
+        return text;
+    }
+    line(
+        &mut text,
+        &format!(
+            "\n{}: rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
+            heading("what matters")
+        ),
+    );
+    for same in sure.chunk_by(|a, b| a.target == b.target) {
+        let target = &same[0].target;
+        let about = target.group.map_or("failures".to_string(), str::to_string);
+        let strongest = same.iter().take(STRONGEST).map(|ranked| {
+            let interval = ranked.interval.map_or(String::new(), |interval| {
+                format!(" [{:+.2}, {:+.2}]", interval.lower, interval.upper)
+            });
+            let condition = title(campaign, &ranked.condition);
+            format!("{condition} {:+.2}{interval}", ranked.effect.trend.value)
+        });
+        let strongest: Vec<String> = strongest.collect();
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {about:<9} {}",
+                target.controller,
+                strongest.join(", ")
+            ),
+        );
+    }
+    text
+}
+
+/// The worst episode of each controller, and how to see it.
+fn worst(findings: &Findings, out: &Path) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!(
+            "\n{} (worst.csv has ten)",
+            heading("worst episode of each controller")
+        ),
+    );
+    for worst in findings.worst.iter().filter(|worst| worst.rank == 1) {
+        line(
+            &mut text,
+            &format!(
+                "  {:<12} {}{}: {}",
+                worst.controller,
+                worst.status.word(),
+                if worst.excess.is_finite() {
+                    format!(
+                        ", |e| up to {:.2} of the limit on {} of agent {}",
+                        worst.excess, worst.channel, worst.agent
+                    )
+                } else {
+                    String::new()
+                },
+                command(out, worst.episode, &worst.controller)
+            ),
+        );
+    }
+    text
+}
+
+/// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and how many
+/// are left out.
+fn worth_showing(ratios: &[Ratio]) -> (Vec<&Ratio>, usize) {
+    let (mut shown, mut channels): (Vec<&Ratio>, Vec<&Ratio>) =
+        ratios.iter().partition(|ratio| ratio.scope == "group");
+    let mut left_out = 0;
+    if channels.len() > MOST_CHANNELS {
+        let value = |ratio: &Ratio| ratio.log_ratio.map_or(f64::NAN, |ratio| ratio.value);
+        channels.sort_by(|a, b| value(a).total_cmp(&value(b)));
+        left_out = channels.len() - 2;
+        channels = vec![channels[0], channels[left_out + 1]];
+    }
+    shown.extend(channels);
+    (shown, left_out)
+}
+
+fn ratio_text(ratio: &Ratio) -> String {
+    let wins = ratio.win_rate.map_or(String::new(), |rate| {
+        format!("  wins {:>5.1} %", 100.0 * rate.value)
+    });
+    match ratio.known() {
+        Some(Measured { value, interval }) => {
+            // Of a few episodes every ratio may be the median.
+            let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
+            let interval = known.map_or("[-]".to_string(), |Interval { lower, upper }| {
+                format!("[{}, {}]", times(lower), times(upper))
+            });
+            format!("{:>8} {interval:<19}{wins}", times(value))
+        }
+        None => "no episodes".to_string(),
+    }
+}
+
+fn times(log_ratio: f64) -> String {
+    let ratio = log_ratio.exp();
+    if ratio.is_infinite() {
+        "inf".into()
+    } else {
+        format!("{ratio:.2}x")
+    }
+}
+
+fn failures_text(comparison: &PairedComparison) -> String {
+    let failures = &comparison.failures;
+    let difference = comparison.known().map_or(String::new(), |difference| {
+        let interval = difference.interval.map_or(String::new(), |interval| {
+            format!(
+                " [{:+.2}, {:+.2}]",
+                100.0 * interval.lower,
+                100.0 * interval.upper
+            )
+        });
+        format!("{:+.2} points{interval}, ", 100.0 * difference.value)
+    });
+    format!(
+        "{difference}only {} {}, only {} {}, both {}{}",
+        comparison.a,
+        failures.only_a,
+        comparison.b,
+        failures.only_b,
+        failures.both,
+        comparison.mid_p.map_or(String::new(), |mid_p| format!(
+            ", McNemar mid-p {}",
+            if mid_p < 0.001 {
+                format!("{mid_p:.1e}")
+            } else {
+                format!("{mid_p:.3}")
+            }
+        )),
+    )
+}
+
+/// What the intervals of failure rates are.
+pub(super) fn kind_of_interval(campaign: &Campaign) -> &'static str {
+    if campaign.sampling.replicates().is_some() {
+        "t 95 %"
+    } else if campaign.stop.is_some() {
+        "sequential 95 %"
+    } else {
+        "Wilson 95 %"
+    }
+}
+
+/// The failure rates of all episodes.
+fn rates(findings: &Findings) -> Vec<&FailureRate> {
+    let mut rates: Vec<&FailureRate> = findings
+        .summary
+        .iter()
+        .map(|row| &row.failures)
+        .filter(|failures| *failures.stratum == *ALL)
+        .collect();
+    rates.dedup();
+    rates
+}

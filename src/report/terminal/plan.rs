@@ -1,0 +1,200 @@
+//! What a campaign would do.
+
+use super::drawn::{drawn, drawn_json};
+use super::effort::{lasting, seconds, steps};
+use super::line;
+use crate::campaign::lints::cautions;
+use crate::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
+use crate::controllers::GainSet;
+use serde_json::{Value, json};
+
+/// Columns of a wrapped line.
+const WIDTH: usize = 100;
+
+/// What a campaign would do.
+pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!("{}: {}", campaign.path.display(), campaign.name),
+    );
+    line(
+        &mut text,
+        &format!(
+            "  {} episodes of {} {} over {} s in steps of {} s, seed {}",
+            campaign.episodes,
+            campaign.team,
+            campaign.agent.noun(campaign.team),
+            campaign.time.shown_s(campaign.time.steps),
+            campaign.time.step_s,
+            campaign.seed
+        ),
+    );
+    line(
+        &mut text,
+        &format!(
+            "  controllers {}: {:.2e} steps of {}, roughly {} on one core with 16 SIMD lanes",
+            campaign.controllers.join(", "),
+            steps(campaign),
+            campaign.agent.plural(),
+            lasting(seconds(campaign))
+        ),
+    );
+    for sentence in design(campaign) {
+        for part in wrapped(&sentence) {
+            line(&mut text, &part);
+        }
+    }
+    for controller in &gains.controllers {
+        for (group, channel) in campaign.channel_groups().iter().zip(&controller.groups) {
+            let level = channel
+                .findings
+                .as_ref()
+                .and_then(|findings| findings.certificate.as_ref());
+            let level = level.map_or(String::new(), |certificate| {
+                format!(", certified rho {:.3}", certificate.rho)
+            });
+            line(
+                &mut text,
+                &format!(
+                    "  gains of {} on {}: {}{level}",
+                    controller.name,
+                    group.role.name(),
+                    controller.source
+                ),
+            );
+        }
+    }
+    text.push_str(&drawn(campaign));
+    for caution in cautions(campaign) {
+        line(&mut text, &format!("note: {caution}"));
+    }
+    text
+}
+
+/// How the episodes are divided, drawn and ended, where that is not as usual.
+fn design(campaign: &Campaign) -> Vec<String> {
+    let mut sentences = Vec::new();
+    strata(campaign, &mut sentences);
+    if let Some(replicates) = campaign.sampling.replicates() {
+        sentences.push(format!(
+            "draws: {replicates} {} of {} episodes",
+            campaign.sampling.design().replicates_noun(),
+            campaign.episodes / replicates.max(1)
+        ));
+    }
+    if let Some(stop) = &campaign.stop {
+        let goal = |goal: &Goal| match goal {
+            Goal::Below(limit) => format!("is below {limit}"),
+            Goal::Above(limit) => format!("is above {limit}"),
+            Goal::HalfWidth(width) => format!("is known to within {width} either way"),
+        };
+        let goals: Vec<String> = stop.goals.iter().map(goal).collect();
+        sentences.push(format!(
+            "stops early once it is {} % sure that the failure rate of {} {}; it looks every {} episodes",
+            100.0 * stop.confidence,
+            campaign.controllers[stop.controller],
+            goals.join(" or "),
+            stop.every
+        ));
+    }
+    sentences
+}
+
+/// What is flown in each stratum. Those of a fault alone, which has their name, are told together where they are of one size.
+fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
+    let turn = campaign.strata.turn();
+    let alone = |stratum: &Stratum| match &stratum.faults {
+        StratumFaults::Certain(faults) => match faults.as_slice() {
+            &[fault] => campaign.faults.get(fault).map(|own| &own.name) == Some(&stratum.name),
+            _ => false,
+        },
+        StratumFaults::Drawn => false,
+    };
+    let all = campaign.strata.all();
+    for (index, stratum) in all.iter().enumerate() {
+        let like = |other: &&Stratum| alone(other) && other.share == stratum.share;
+        let share = stratum.share;
+        if alone(stratum) {
+            let names: Vec<&str> = all.iter().filter(like).map(|own| &*own.name).collect();
+            if all[..index].iter().any(|other| like(&other)) {
+                continue;
+            }
+            if let count @ 2.. = names.len() {
+                sentences.push(format!(
+                    "{count} strata of {share} of every {turn} episodes, in each one fault in {}: {}",
+                    whom(&campaign.faults.iter().collect::<Vec<_>>()),
+                    names.join(", ")
+                ));
+                continue;
+            }
+        }
+        let faults = match &stratum.faults {
+            StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
+            StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
+            StratumFaults::Certain(faults) => {
+                let faults = faults.iter().filter_map(|&k| campaign.faults.get(k));
+                let faults: Vec<&Fault> = faults.collect();
+                let names: Vec<&str> = faults.iter().map(|fault| &*fault.name).collect();
+                format!("{} in {}", names.join(" + "), whom(&faults))
+            }
+        };
+        sentences.push(format!(
+            "stratum {:?}: {share} of every {turn} episodes, {faults}",
+            stratum.name
+        ));
+    }
+    let background = campaign.faults.iter().filter(|fault| fault.background);
+    let background: Vec<&str> = background.map(|fault| &*fault.name).collect();
+    if !background.is_empty() && !all.is_empty() {
+        sentences.push(format!(
+            "in the background of all strata, each with its own probability: {}",
+            background.join(", ")
+        ));
+    }
+}
+
+/// Who has faults that a stratum makes certain.
+fn whom(faults: &[&Fault]) -> &'static str {
+    if faults.iter().any(|fault| fault.spares_some()) {
+        "every agent whose probability of it is not 0"
+    } else {
+        "every agent"
+    }
+}
+
+/// A sentence in lines of moderate length, all but the first further to the right: broken at commas, or where there are none
+/// between words.
+fn wrapped(sentence: &str) -> Vec<String> {
+    let parts = sentence.split_inclusive(", ").flat_map(|part| {
+        let whole = part.chars().count() < WIDTH / 2;
+        part.split_inclusive(if whole { ", " } else { " " })
+    });
+    let mut lines = vec!["  ".to_string()];
+    for part in parts {
+        let length = |text: &str| text.trim_end().chars().count();
+        match lines.last_mut() {
+            Some(last) if last.chars().count() + length(part) <= WIDTH => last.push_str(part),
+            _ => lines.push(format!("    {part}")),
+        }
+    }
+    lines
+        .iter()
+        .map(|line| line.trim_end().to_string())
+        .collect()
+}
+
+/// [`plan`] for programs.
+pub fn plan_json(campaign: &Campaign) -> Value {
+    json!({
+        "name": campaign.name, "episodes": campaign.episodes, "team": campaign.team, "seed": campaign.seed,
+        "strata": campaign.strata.all().iter().map(|stratum| json!({
+            "name": *stratum.name, "share": stratum.share,
+        })).collect::<Vec<_>>(),
+        "design": design(campaign),
+        "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
+        "drawn": drawn_json(campaign),
+        "roughly_s": seconds(campaign),
+        "notes": cautions(campaign),
+    })
+}

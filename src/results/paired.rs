@@ -1,0 +1,279 @@
+//! How pairs of controllers compare on the same episodes.
+
+use super::strata::{Part, parts, replicates};
+use super::tables::{Scores, Status};
+use super::{Layout, Replicated, over_replicates};
+use crate::campaign::Campaign;
+use crate::random::{Method, allows};
+use crate::statistics::LEVEL;
+use crate::statistics::{
+    Estimate, Interval, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
+    win_rate,
+};
+use std::sync::Arc;
+
+/// An estimate, with its interval where the sampling design allows one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// Point estimate.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval: Option<Interval>,
+}
+
+/// How controller `a` compares with `b` on the same episodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairedComparison {
+    /// First controller.
+    pub a: String,
+    /// Second controller.
+    pub b: String,
+    /// Which episodes: "all", those of a stratum, or those with or without a fault.
+    pub stratum: Arc<str>,
+    /// Failures of both, each, and neither.
+    pub failures: PairedFailures,
+    /// McNemar's mid-p of equal failure rates, of independent draws.
+    pub mid_p: Option<f64>,
+    /// The same after Holm's correction for its family: all pairs of controllers in all strata.
+    pub p_holm: Option<f64>,
+    /// Failure rate of `a` minus that of `b`.
+    pub difference: Option<Measured>,
+    /// Student's t of that difference over the replicates of a sampling design, if there are enough of them.
+    pub over_replicates: Option<Replicated>,
+    /// RMS errors, by channel group and by channel.
+    pub ratios: Vec<Ratio>,
+}
+
+/// How much smaller the RMS error of `a` is than that of `b`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ratio {
+    /// "group" or "channel".
+    pub scope: &'static str,
+    /// The channel or group.
+    pub name: Arc<str>,
+    /// Median over the episodes of ln(rmse of b / rmse of a), averaged over the team and over the channels of a group.
+    pub log_ratio: Option<Measured>,
+    /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is the mean of
+    /// their medians.
+    pub over_replicates: Option<Replicated>,
+    /// Mid-p of the sign test of that median, of independent draws.
+    pub sign_p: Option<f64>,
+    /// Share of the episodes in which `a` is better; ties count half.
+    pub win_rate: Option<Measured>,
+    /// Episodes in which only `a`, only `b` and both diverged.
+    pub diverged: [u64; 3],
+}
+
+impl PairedComparison {
+    /// The difference of the failure rates with the interval that the sampling design allows: over its replicates where it has
+    /// them.
+    #[must_use]
+    pub fn known(&self) -> Option<Measured> {
+        known(self.difference, self.over_replicates)
+    }
+
+    /// p-value of equal failure rates, by the test that the sampling design allows.
+    #[must_use]
+    pub fn p(&self) -> Option<f64> {
+        self.mid_p.or(self.over_replicates.map(|found| found.p))
+    }
+}
+
+impl Ratio {
+    /// The log-ratio with the interval that the sampling design allows: over its replicates where it has them.
+    #[must_use]
+    pub fn known(&self) -> Option<Measured> {
+        known(self.log_ratio, self.over_replicates)
+    }
+
+    /// p-value of equal errors, by the test that the sampling design allows.
+    #[must_use]
+    pub fn p(&self) -> Option<f64> {
+        self.sign_p.or(self.over_replicates.map(|found| found.p))
+    }
+}
+
+/// Every pair of controllers, in the campaign's order: in all episodes, then in each stratum.
+#[must_use]
+pub fn compare(campaign: &Campaign, scores: &Scores) -> Vec<PairedComparison> {
+    let parts = parts(campaign, scores);
+    let count = campaign.controllers.len();
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+    let mut comparisons: Vec<PairedComparison> = pairs
+        .flat_map(|pair| compare_pair(campaign, scores, pair, &parts))
+        .collect();
+    let p_values: Option<Vec<f64>> = comparisons.iter().map(|own| own.mid_p).collect();
+    let adjusted = holm(&p_values.unwrap_or_default());
+    for (comparison, p_holm) in comparisons.iter_mut().zip(adjusted) {
+        comparison.p_holm = Some(p_holm);
+    }
+    comparisons
+}
+
+fn compare_pair(
+    campaign: &Campaign,
+    scores: &Scores,
+    [a, b]: [usize; 2],
+    parts: &[Part],
+) -> Vec<PairedComparison> {
+    let groups = campaign.channel_groups().into_iter();
+    let groups = groups.map(|group| ("group", Arc::from(group.role.name()), group.channels));
+    let channels = campaign.channels().iter().enumerate();
+    let channels = channels.map(|(c, name)| ("channel", name.clone(), c..c + 1));
+    let series: Vec<(&'static str, Arc<str>, Vec<f64>)> = groups
+        .chain(channels)
+        .map(|(scope, name, channels)| {
+            let layout = Layout::new(campaign, channels);
+            (scope, name, log_ratios(scores, [a, b], &layout))
+        })
+        .collect();
+    let paired = allows(campaign.sampling.design(), Method::Paired);
+    let of_part = |part: &Part| {
+        let failures = paired_failures(scores, [a, b], &part.episodes);
+        let difference = |episodes: &Vec<usize>| {
+            let failures = paired_failures(scores, [a, b], episodes);
+            Some(paired_difference(&failures, LEVEL)?.value)
+        };
+        let of_replicates = replicates(campaign, &part.episodes);
+        let differences: Option<Vec<f64>> = of_replicates.iter().map(difference).collect();
+        PairedComparison {
+            a: campaign.controllers[a].clone(),
+            b: campaign.controllers[b].clone(),
+            stratum: part.name.clone(),
+            mid_p: paired.then(|| mcnemar_mid_p(failures.only_a, failures.only_b)),
+            p_holm: None,
+            difference: paired_difference(&failures, LEVEL).map(|found| measured(found, paired)),
+            over_replicates: differences.and_then(|own| over_replicates(&own)),
+            failures,
+            ratios: series
+                .iter()
+                .map(|(scope, name, log_ratios)| {
+                    ratio(campaign, scores, [a, b], part, scope, name, log_ratios)
+                })
+                .collect(),
+        }
+    };
+    parts.iter().map(of_part).collect()
+}
+
+fn known(
+    measured_at_once: Option<Measured>,
+    over_replicates: Option<Replicated>,
+) -> Option<Measured> {
+    let over_replicates = over_replicates.map(|found| measured(found.estimate, true));
+    over_replicates.or(measured_at_once)
+}
+
+fn measured(estimate: Estimate, with_interval: bool) -> Measured {
+    Measured {
+        value: estimate.value,
+        interval: with_interval.then_some(estimate.interval),
+    }
+}
+
+fn paired_failures(scores: &Scores, [a, b]: [usize; 2], episodes: &[usize]) -> PairedFailures {
+    let mut failures = PairedFailures {
+        both: 0,
+        only_a: 0,
+        only_b: 0,
+        neither: 0,
+    };
+    let failed =
+        |controller: usize, episode: usize| scores.status[controller][episode] != Status::Ok;
+    for &episode in episodes {
+        match (failed(a, episode), failed(b, episode)) {
+            (true, true) => failures.both += 1,
+            (true, false) => failures.only_a += 1,
+            (false, true) => failures.only_b += 1,
+            (false, false) => failures.neither += 1,
+        }
+    }
+    failures
+}
+
+fn ratio(
+    campaign: &Campaign,
+    scores: &Scores,
+    [a, b]: [usize; 2],
+    part: &Part,
+    scope: &'static str,
+    name: &Arc<str>,
+    log_ratios: &[f64],
+) -> Ratio {
+    let (mut wins, mut losses, mut ties, mut diverged) = (0, 0, 0, [0; 3]);
+    for &episode in &part.episodes {
+        let log_ratio = log_ratios[episode];
+        match log_ratio.total_cmp(&0.0) {
+            _ if log_ratio == 0.0 => ties += 1,
+            std::cmp::Ordering::Greater => wins += 1,
+            std::cmp::Ordering::Less | std::cmp::Ordering::Equal => losses += 1,
+        }
+        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        match (gone(a), gone(b)) {
+            (true, false) => diverged[0] += 1,
+            (false, true) => diverged[1] += 1,
+            (true, true) => diverged[2] += 1,
+            (false, false) => {}
+        }
+    }
+    let of = |episodes: &[usize]| {
+        episodes
+            .iter()
+            .map(|&k| log_ratios[k])
+            .collect::<Vec<f64>>()
+    };
+    let design = campaign.sampling.design();
+    let median = |values: &[f64]| median_bca(values, LEVEL);
+    let medians: Option<Vec<f64>> = replicates(campaign, &part.episodes)
+        .iter()
+        .map(|episodes| median(&of(episodes)).map(|median| median.value))
+        .collect();
+    Ratio {
+        scope,
+        name: name.clone(),
+        log_ratio: median(&of(&part.episodes))
+            .map(|found| measured(found, allows(design, Method::Quantile))),
+        over_replicates: medians.and_then(|medians| over_replicates(&medians)),
+        sign_p: allows(design, Method::Paired).then(|| mcnemar_mid_p(wins, losses)),
+        win_rate: win_rate(wins, losses, ties, LEVEL)
+            .map(|found| measured(found, allows(design, Method::Paired))),
+        diverged,
+    }
+}
+
+/// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them diverged,
+/// 0 where both did.
+pub(crate) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
+    let of_episode = |episode: usize| {
+        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        match (gone(a), gone(b)) {
+            (true, true) => 0.0,
+            (true, false) => f64::NEG_INFINITY,
+            (false, true) => f64::INFINITY,
+            (false, false) => {
+                let pairs = layout
+                    .of(&scores.rmse[a], episode)
+                    .zip(layout.of(&scores.rmse[b], episode));
+                let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
+                    (sum + log_ratio_of(of_a, of_b), count + 1.0)
+                });
+                // One perfect channel each: neither is better.
+                if sum.is_nan() { 0.0 } else { sum / count }
+            }
+        }
+    };
+    (0..scores.episodes()).map(of_episode).collect()
+}
+
+/// ln(b / a).
+#[expect(
+    clippy::float_cmp,
+    reason = "two errors of exactly zero are a tie, and so are equal ones"
+)]
+fn log_ratio_of(of_a: f64, of_b: f64) -> f64 {
+    if of_a == of_b {
+        0.0
+    } else {
+        (of_b / of_a).ln()
+    }
+}

@@ -1,0 +1,233 @@
+//! Who does better, in a sentence for each opponent of the first controller.
+
+use super::paired::{PairedComparison, Ratio};
+use super::summary::MetricQuantiles;
+use crate::campaign::{ALL, Campaign};
+use crate::statistics::Interval;
+use crate::statistics::LEVEL;
+use crate::util::format::rounded_up;
+
+/// What an interval says about the first of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Better,
+    Worse,
+    Unsure,
+}
+
+/// How sure the sentences of [`verdict`] are.
+#[must_use]
+pub fn how_sure(campaign: &Campaign) -> String {
+    let tests = match campaign.sampling.replicates() {
+        None => "exact tests agree",
+        Some(_) => "Student's t over the replicates leaves no doubt",
+    };
+    format!(
+        "better and worse are said where {tests}, at 5 % for all these statements together; intervals 95 %"
+    )
+}
+
+/// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how often it
+/// fails if it is the only one. "Better" and "worse" are said where the 95 % interval and a test (McNemar's mid-p of the failures,
+/// the sign test of the errors, Student's t over the replicates of a design; at 5 % over the number of all that is looked at) leave
+/// no doubt; each sentence has the numbers that it stands on.
+#[must_use]
+pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
+    let first = comparisons.first().map(|own| &own.a);
+    let of_first = comparisons
+        .iter()
+        .filter(|own| Some(&own.a) == first && *own.stratum == *ALL);
+    let of_first: Vec<&PairedComparison> = of_first.collect();
+    // Of each opponent, the failures and every channel group.
+    let looks = of_first.iter().map(|pair| 1 + groups(pair).count()).sum();
+    match first {
+        Some(_) => of_first.iter().map(|pair| of_pair(pair, looks)).collect(),
+        None => summary.first().map(of_one).into_iter().collect(),
+    }
+}
+
+fn of_one(row: &MetricQuantiles) -> String {
+    let rate = &row.failures;
+    let (name, failed, n) = (&rate.controller, rate.failed(), rate.n);
+    let known = match (rate.upper_95, rate.interval()) {
+        // Of one that fails often, an upper bound says nothing.
+        (Some(upper), _) if 2 * failed <= n => {
+            format!("is below {} %", rounded_up(100.0 * upper, 2))
+        }
+        (_, Some(Interval { lower, upper })) => {
+            format!("is between {:.2} and {:.2} %", 100.0 * lower, 100.0 * upper)
+        }
+        (_, None) => "has no bound from these episodes".to_string(),
+    };
+    format!(
+        "{name} fails in {failed} of {n} episodes: with 95 % confidence its failure rate {known}"
+    )
+}
+
+fn groups(pair: &PairedComparison) -> impl Iterator<Item = &Ratio> {
+    pair.ratios.iter().filter(|ratio| ratio.scope == "group")
+}
+
+fn of_pair(pair: &PairedComparison, looks: usize) -> String {
+    let failures = &pair.failures;
+    let n = failures.both + failures.only_a + failures.only_b + failures.neither;
+    if n == 1 {
+        return of_one_episode(pair);
+    }
+    let (by_failures, failing) = failing(pair, n, looks);
+    let known = pair.known().is_some_and(|found| found.interval.is_some());
+    let (sides, errors): (Vec<Option<Side>>, Vec<String>) =
+        groups(pair).map(|group| error_of(group, looks)).unzip();
+    let errors = match sides.iter().all(|own| *own == Some(Side::Unsure)) {
+        true => "not clearly different".to_string(),
+        false => errors.join(" and "),
+    };
+    let any = |wanted| by_failures == wanted || sides.contains(&Some(wanted));
+    let all = |wanted| sides.iter().all(|own| *own == Some(wanted));
+    let (a, b) = (&pair.a, &pair.b);
+    let opening = match (any(Side::Better), any(Side::Worse)) {
+        (true, false) => format!("{a} does better than {b}"),
+        (false, true) => format!("{a} does worse than {b}"),
+        (true, true) if by_failures == Side::Worse && all(Side::Better) => {
+            format!("{a} follows more closely than {b}, but fails more often")
+        }
+        (true, true) if by_failures == Side::Better && all(Side::Worse) => {
+            format!("{a} fails less often than {b}, but follows less closely")
+        }
+        (true, true) => format!("{a} is in part better and in part worse than {b}"),
+        (false, false) if !known && sides.iter().all(Option::is_none) => {
+            format!("nothing here says how sure a difference between {a} and {b} is")
+        }
+        (false, false) => format!("{n} episodes do not tell {a} and {b} apart"),
+    };
+    format!("{opening}: {failing}; in the median its RMS error is {errors}")
+}
+
+/// What a single episode shows.
+fn of_one_episode(pair: &PairedComparison) -> String {
+    let (a, b, failures) = (&pair.a, &pair.b, &pair.failures);
+    let failing = match (failures.both, failures.only_a, failures.only_b) {
+        (0, 0, 0) => "neither fails".to_string(),
+        (0, 0, _) => format!("{b} fails"),
+        (0, _, _) => format!("{a} fails"),
+        _ => "both fail".to_string(),
+    };
+    let error = |group: &Ratio| {
+        let found = group.log_ratio?;
+        Some(format!("{} in {}", times(found.value, None), group.name))
+    };
+    let errors: Vec<String> = groups(pair).filter_map(error).collect();
+    let errors = match groups(pair).any(|group| group.diverged[2] > 0) {
+        true => "both diverge, so there are no errors to compare".to_string(),
+        false => format!("the RMS error of {a} is {}", errors.join(" and ")),
+    };
+    format!(
+        "{a} against {b} in this one episode, which tells nothing of others: {failing}; {errors}"
+    )
+}
+
+/// Whether `a` fails less often.
+fn failing(pair: &PairedComparison, n: u64, looks: usize) -> (Side, String) {
+    let failures = &pair.failures;
+    let of_a = failures.both + failures.only_a;
+    let of_b = failures.both + failures.only_b;
+    if of_a + of_b == 0 {
+        return (Side::Unsure, "neither fails".to_string());
+    }
+    if failures.both == n {
+        return (Side::Unsure, "both fail in every episode".to_string());
+    }
+    let percent = |count: u64| 100.0 * count as f64 / n.max(1) as f64;
+    let rates = format!(
+        "it fails in {:.1} % of the episodes, the other in {:.1} %",
+        percent(of_a),
+        percent(of_b)
+    );
+    let interval = pair.known().and_then(|found| found.interval);
+    // Fewer failures are better.
+    let side = interval.map_or(Side::Unsure, |own| {
+        sure(side(-own.upper, -own.lower), pair.p(), looks)
+    });
+    let value = percent(of_a) - percent(of_b);
+    let points = match interval {
+        Some(Interval { lower, upper }) => format!(
+            " ({value:+.1} points [{:+.1}, {:+.1}])",
+            100.0 * lower,
+            100.0 * upper
+        ),
+        None => format!(" ({value:+.1} points, no interval)"),
+    };
+    let unclear = match (side, interval) {
+        (Side::Unsure, Some(_)) => ", no clear difference",
+        _ => "",
+    };
+    (side, format!("{rates}{points}{unclear}"))
+}
+
+/// Whether the errors of `a` are smaller on a group of channels; none where no interval tells.
+fn error_of(ratio: &Ratio, looks: usize) -> (Option<Side>, String) {
+    let name = &ratio.name;
+    let found = ratio.known();
+    let interval = found.and_then(|found| found.interval);
+    let side = interval.map(|own| sure(side(own.lower, own.upper), ratio.p(), looks));
+    let words = match (side, found) {
+        (_, None) => format!("unknown in {name}"),
+        (None, Some(found)) => format!("{} in {name} (no interval)", times(found.value, None)),
+        (Some(Side::Unsure), _) => format!("not clearly different in {name}"),
+        (Some(_), Some(found)) => format!("{} in {name}", times(found.value, interval)),
+    };
+    (side, words)
+}
+
+/// A side, if its test agrees with so many looks at the data.
+fn sure(side: Side, p: Option<f64>, looks: usize) -> Side {
+    match p {
+        Some(p) if p * looks as f64 > 1.0 - LEVEL => Side::Unsure,
+        _ => side,
+    }
+}
+
+/// What an interval of "how much better" says.
+fn side(lower: f64, upper: f64) -> Side {
+    if lower > 0.0 {
+        Side::Better
+    } else if upper < 0.0 {
+        Side::Worse
+    } else {
+        Side::Unsure
+    }
+}
+
+/// A logarithm of a ratio as "3.1 times smaller [2.9, 3.3]": of what is larger as a number above 1, too.
+fn times(log_ratio: f64, interval: Option<Interval>) -> String {
+    let (sign, word) = if log_ratio < 0.0 {
+        (-1.0, "larger")
+    } else {
+        (1.0, "smaller")
+    };
+    let number = |log_ratio: f64| {
+        let ratio = (sign * log_ratio).exp();
+        if ratio >= 9.995 && ratio.is_finite() {
+            format!("{ratio:.1}")
+        } else if ratio.is_finite() {
+            format!("{ratio:.2}")
+        } else {
+            "inf".to_string()
+        }
+    };
+    let ends = interval.map_or(String::new(), |Interval { lower, upper }| {
+        let (low, high) = if sign < 0.0 {
+            (upper, lower)
+        } else {
+            (lower, upper)
+        };
+        format!(" [{}, {}]", number(low), number(high))
+    });
+    if log_ratio == 0.0 || interval.is_none() && number(log_ratio) == "1.00" {
+        "as large".to_string()
+    } else if log_ratio.is_infinite() {
+        format!("{word} beyond measure{ends}, as a diverged flight counts,")
+    } else {
+        format!("{} times {word}{ends}", number(log_ratio))
+    }
+}

@@ -1,0 +1,364 @@
+//! The directory of a run: who may write there, and files that appear whole or not at all.
+
+use super::error::{MANIFEST, OutputError, REPORTS, TABLES};
+use super::manifest::{Manifest, campaign_hash};
+use crate::campaign::Campaign;
+use crate::results::tables::Table;
+use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
+
+/// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
+const ROW_GROUP: usize = 1 << 18;
+
+/// A directory that this run may write.
+#[derive(Debug, Clone)]
+pub struct OutputDir(PathBuf);
+
+impl OutputDir {
+    /// Claims a directory before any work is done. It may be absent, empty, hold a run of the same campaign text and seed
+    /// with no more episodes, or what is left of an unfinished run; anything else is refused unless `overwrite`.
+    ///
+    /// # Errors
+    /// If the directory holds something else or cannot be written. Nothing is left behind then.
+    pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
+        let taken = |what: String| OutputError::Taken {
+            path: path.to_path_buf(),
+            what,
+        };
+        let unwritable = |source| OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source,
+        };
+        if path.exists() && !path.is_dir() {
+            return Err(unwritable(ErrorKind::NotADirectory.into()));
+        }
+        let occupied =
+            path.is_dir() && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
+        if occupied && !overwrite {
+            match Manifest::read(path) {
+                Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
+                    return Err(taken(format!(
+                        "a run of another campaign text ({:?})",
+                        run.name
+                    )));
+                }
+                Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => {
+                    return Err(taken(format!(
+                        "a run of {} episodes with seed {}",
+                        run.episodes, run.seed
+                    )));
+                }
+                Ok(_) => {}
+                Err(_) if holds_only_ours(path) => {}
+                Err(_) => return Err(taken("files, but no finished run".into())),
+            }
+        }
+        try_to_write(path).map_err(unwritable)?;
+        Ok(Self(path.to_path_buf()))
+    }
+
+    /// A directory that exists already, for an additional file.
+    #[must_use]
+    pub fn existing(path: &Path) -> Self {
+        Self(path.to_path_buf())
+    }
+
+    /// The directory.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Writes a file under its final name only when it is complete.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
+        self.write_with(name, |file| file.write_all(content))
+    }
+
+    /// Writes a table as Parquet.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_parquet(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+        self.write_table(name, table, |file, frame| {
+            ParquetWriter::new(file)
+                .with_compression(ParquetCompression::Snappy)
+                .with_row_group_size(Some(ROW_GROUP))
+                .finish(frame)
+                .map(|_| ())
+        })
+    }
+
+    /// Writes a table as CSV.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_csv(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+        self.write_table(name, table, |file, frame| {
+            CsvWriter::new(file).finish(frame)
+        })
+    }
+
+    fn write_table(
+        &self,
+        name: &str,
+        table: &Table,
+        encode: impl FnOnce(&mut Sink, &mut polars::prelude::DataFrame) -> Result<(), PolarsError>,
+    ) -> Result<(), OutputError> {
+        let broken = |source| OutputError::Table {
+            path: self.0.join(name),
+            source,
+        };
+        let mut frame = table.to_frame().map_err(broken)?;
+        let mut encoded = Ok(());
+        let written = self.write_with(name, |file| {
+            encoded = encode(file, &mut frame);
+            match (&encoded, file.broken.take()) {
+                (Ok(()), _) => Ok(()),
+                // Encoders call a full disk a malformed table.
+                (Err(_), Some(error)) => {
+                    encoded = Ok(());
+                    Err(error)
+                }
+                // Keeps the file from getting its final name; the encoder's own error is reported.
+                (Err(_), None) => Err(ErrorKind::InvalidData.into()),
+            }
+        });
+        encoded.map_err(broken).and(written)
+    }
+
+    fn write_with(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut Sink) -> std::io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let (part, whole) = (self.0.join(format!(".{name}.part")), self.0.join(name));
+        let written = fs::create_dir_all(&self.0)
+            .and_then(|()| File::create(&part))
+            .map(Sink::new)
+            .and_then(|mut file| fill(&mut file).and_then(|()| file.flush()))
+            .and_then(|()| fs::rename(&part, &whole));
+        written.map_err(|source| {
+            // The error that is reported is the first.
+            let _ = fs::remove_file(&part);
+            OutputError::Unwritable {
+                path: whole,
+                source,
+            }
+        })
+    }
+
+    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled, and
+    /// what the new run may not replace.
+    ///
+    /// # Errors
+    /// If there is something and it cannot be removed.
+    pub fn begin(&self) -> Result<(), OutputError> {
+        remove(self.0.join(MANIFEST))?;
+        let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
+        for entry in entries {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let report = REPORTS.contains(&&*name);
+            let half = name.starts_with('.') && name.ends_with(".part");
+            if is_replay(&name) || report || half || is_table(&name) {
+                remove(entry.path())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Makes a directory and a file in it, and takes both away again.
+fn try_to_write(dir: &Path) -> std::io::Result<()> {
+    let absent: Vec<&Path> = dir
+        .ancestors()
+        .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
+        .collect();
+    let probe = dir.join(".urts-mc-probe");
+    let tried = fs::create_dir_all(dir)
+        .and_then(|()| File::create(&probe))
+        .and_then(|_| fs::remove_file(&probe));
+    // The directories are made again when the first file is written; a run that fails before leaves none behind.
+    for dir in absent {
+        // One that could not be made cannot be removed either.
+        let _ = fs::remove_dir(dir);
+    }
+    tried
+}
+
+/// A single file that may be written.
+#[derive(Debug, Clone)]
+pub struct OutputFile {
+    dir: OutputDir,
+    name: String,
+}
+
+impl OutputFile {
+    /// Finds out whether a file can be written before any work is done; replaces nothing yet.
+    ///
+    /// # Errors
+    /// If it is a directory or another thing that is no file, or its directory cannot be written. Nothing is left behind then.
+    pub fn claim(path: &Path) -> Result<Self, OutputError> {
+        let unwritable = |source| OutputError::Unwritable {
+            path: path.to_path_buf(),
+            source,
+        };
+        if path.exists() && !path.is_file() {
+            return Err(unwritable(std::io::Error::other("it is no file")));
+        }
+        let name = path
+            .file_name()
+            .ok_or_else(|| unwritable(ErrorKind::InvalidFilename.into()))?
+            .to_string_lossy()
+            .into_owned();
+        let dir = path
+            .parent()
+            .filter(|dir| !dir.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
+        try_to_write(dir).map_err(unwritable)?;
+        Ok(Self {
+            dir: OutputDir::existing(dir),
+            name,
+        })
+    }
+
+    /// Whether the directory that is to hold it exists.
+    #[must_use]
+    pub fn has_place(&self) -> bool {
+        self.dir.path().is_dir()
+    }
+
+    /// Takes away an earlier file of this name, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn remove(&self) -> Result<(), OutputError> {
+        remove(self.dir.path().join(&self.name))
+    }
+
+    /// Writes the file under its name only when it is complete.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, content: &[u8]) -> Result<(), OutputError> {
+        self.dir.write(&self.name, content)
+    }
+
+    /// As [`OutputFile::write`], a table as Parquet.
+    ///
+    /// # Errors
+    /// If the table cannot be encoded or written.
+    pub fn write_parquet(&self, table: &Table) -> Result<(), OutputError> {
+        self.dir.write_parquet(&self.name, table)
+    }
+}
+
+/// A file that is being written, and what its disk said first when it took no more.
+struct Sink {
+    file: BufWriter<File>,
+    broken: Option<std::io::Error>,
+}
+
+impl Sink {
+    fn new(file: File) -> Self {
+        let (file, broken) = (BufWriter::new(file), None);
+        Self { file, broken }
+    }
+
+    /// Keeps an error, for the encoder may not.
+    fn heard<T>(&mut self, result: std::io::Result<T>) -> std::io::Result<T> {
+        if let Err(error) = &result
+            && error.kind() != ErrorKind::Interrupted
+        {
+            let again = error.raw_os_error().map(std::io::Error::from_raw_os_error);
+            let again = again.unwrap_or_else(|| error.kind().into());
+            self.broken.get_or_insert(again);
+        }
+        result
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.heard(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let flushed = self.file.flush();
+        self.heard(flushed)
+    }
+}
+
+/// Removes a file that may be absent.
+fn remove(path: PathBuf) -> Result<(), OutputError> {
+    match fs::remove_file(&path) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            Err(OutputError::Unwritable { path, source })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a file is a table that some run writes.
+fn is_table(name: &str) -> bool {
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
+}
+
+/// Whether a file is the table or a figure of a replay.
+fn is_replay(name: &str) -> bool {
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    stem.starts_with("replay-") && ["parquet", "html", "svg"].contains(&extension)
+}
+
+/// Whether a file is one that a run writes, beside its manifest.
+fn is_ours(name: &str) -> bool {
+    is_table(name) || is_replay(name) || name == "gains.json" || REPORTS.contains(&name)
+}
+
+/// Whether a path is that of a file that a run in the directory `out` writes itself, whether they are there yet or not.
+#[must_use]
+pub fn is_of_run(out: &Path, path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let dir = path.parent().unwrap_or(Path::new(""));
+    (is_ours(&name) || name == MANIFEST) && resolved(dir) == resolved(out)
+}
+
+/// A directory's real path; what does not exist yet has no links in it, so that `..` is the directory before.
+fn resolved(dir: &Path) -> PathBuf {
+    let here = std::env::current_dir().unwrap_or_default();
+    let whole = here.join(dir);
+    let there = whole.ancestors().find_map(|dir| {
+        let rest = whole.strip_prefix(dir).unwrap_or(Path::new(""));
+        Some((dir.canonicalize().ok()?, rest))
+    });
+    let (mut real, rest) = there.unwrap_or((PathBuf::new(), &whole));
+    for part in rest.components() {
+        if part == Component::ParentDir {
+            real.pop();
+        } else {
+            real.push(part);
+        }
+    }
+    real
+}
+
+/// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
+fn holds_only_ours(dir: &Path) -> bool {
+    let ours = |name: &str| {
+        let whole = name
+            .strip_prefix('.')
+            .and_then(|name| name.strip_suffix(".part"))
+            .unwrap_or(name);
+        is_ours(whole)
+    };
+    let entries = fs::read_dir(dir).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.all(|name| ours(&name))
+}

@@ -1,0 +1,70 @@
+//! Why a run cannot be written or read, and the names of its files.
+
+use polars::prelude::PolarsError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// The tables of a run; not every run writes all of them.
+pub const TABLES: [&str; 7] = [
+    "episodes",
+    "channels",
+    "summary",
+    "comparison",
+    "screening",
+    "ranking",
+    "worst",
+];
+
+/// The reports of a run.
+pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
+
+/// File name of the manifest, which is written after all tables: a directory that has one holds all episodes that it counts. Only
+/// the reports, which are made of the directory, come after it.
+pub const MANIFEST: &str = "manifest.json";
+
+/// Why a run cannot be written or read.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The directory cannot be used.
+    ///
+    /// What would help depends on who asked for it, and is said there.
+    #[error("{}: cannot be written ({source})", path.display())]
+    Unwritable {
+        /// The directory or file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The directory holds something else.
+    #[error("{}: holds {what}; give another directory with --out, or replace it with --overwrite", path.display())]
+    Taken {
+        /// The directory.
+        path: PathBuf,
+        /// What it holds.
+        what: String,
+    },
+    /// The directory does not hold a run, or not a whole one.
+    #[error("{}: holds no readable run ({reason}); name the output directory of a finished run", path.display())]
+    NoRun {
+        /// The directory.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A table cannot be encoded.
+    #[error("{}: the table cannot be encoded", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: PolarsError,
+    },
+}
+
+impl OutputError {
+    /// Whether another `--out` would help: such errors are bad usage.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        !matches!(self, Self::Table { .. })
+    }
+}

@@ -1,0 +1,104 @@
+//! The manifest of a run: what it takes to do it again, and what it was done with.
+
+use super::error::{MANIFEST, OutputError};
+use crate::backend::cpu::Precision;
+use crate::campaign::{Campaign, CampaignError};
+use crate::results::RequirementResult;
+use crate::simulation::Leg;
+use crate::simulation::Times;
+use crate::simulation::cross_check::CrossCheck;
+use crate::simulation::stopping::Stopped;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Everything about a run that its tables do not say.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Name of the campaign.
+    pub name: String,
+    /// Version of the program.
+    pub version: String,
+    /// Revision of the program's source, where it was built from a repository.
+    pub git_revision: Option<String>,
+    /// The campaign file, as it was named.
+    pub campaign_path: String,
+    /// BLAKE3 hash of the campaign text.
+    pub campaign_blake3: String,
+    /// The campaign text.
+    pub campaign: String,
+    /// The text of the robot's file, where there are robots.
+    pub robot: Option<String>,
+    /// Seed that was used: the campaign's, unless it was overridden.
+    pub seed: u64,
+    /// Episodes that were flown.
+    pub episodes: u32,
+    /// Episodes that were asked for.
+    pub episodes_asked: u32,
+    /// What the campaign's `[stop]` knows at the end, and whether it ended the run.
+    pub stopped: Option<Stopped>,
+    /// What became of each `[[require]]`, in the campaign's order; empty in runs of older versions.
+    #[serde(default)]
+    pub requirements: Vec<RequirementResult>,
+    /// Why fewer were flown than that, if so.
+    pub interrupted: Option<String>,
+    /// Number format of the episode loop.
+    pub precision: Precision,
+    /// What flew them.
+    pub legs: Vec<Leg>,
+    /// What there is to know about the choice of the backend.
+    pub notes: Vec<String>,
+    /// How some episodes compare with the reference, if they were.
+    pub cross_check: Option<CrossCheck>,
+    /// Why they were not, if they should have been.
+    pub cross_check_missing: Option<String>,
+    /// Who does better, a sentence for each opponent of the first controller; empty in runs of older versions.
+    #[serde(default)]
+    pub verdict: Vec<String>,
+    /// What the strata do to each controller, in sentences ([`crate::results::worst_fault`]); empty without strata to compare.
+    #[serde(default)]
+    pub harm: Vec<String>,
+    /// Wall-clock times.
+    pub times: Times,
+}
+
+/// The source revision that this program was built from.
+pub(crate) const GIT_REVISION: Option<&str> = option_env!("URTS_MC_GIT_REVISION");
+
+/// The hash that tells one campaign text from another.
+#[must_use]
+pub fn campaign_hash(campaign: &Campaign) -> String {
+    blake3::hash(campaign.text.as_bytes()).to_hex().to_string()
+}
+
+impl Manifest {
+    /// Reads the manifest of a run's directory.
+    ///
+    /// # Errors
+    /// If there is none or it is not one.
+    pub fn read(dir: &Path) -> Result<Self, OutputError> {
+        let no_run = |reason: String| OutputError::NoRun {
+            path: dir.to_path_buf(),
+            reason,
+        };
+        let text = std::fs::read_to_string(dir.join(MANIFEST))
+            .map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
+        serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
+    }
+
+    /// The campaign that was flown, with the run's seed and the number of episodes that was asked for.
+    ///
+    /// # Errors
+    /// If this version does not read the campaign any more.
+    pub fn campaign(&self) -> Result<Campaign, CampaignError> {
+        let mut campaign = Campaign::parse_with_robot(
+            &self.campaign,
+            Path::new(&self.campaign_path),
+            self.robot.as_deref(),
+        )?;
+        campaign.seed = self.seed;
+        // What a design draws belongs to the number of episodes that was asked for.
+        campaign.episodes = self.episodes_asked;
+        Ok(campaign)
+    }
+}

@@ -1,0 +1,283 @@
+//! A whole run: gains, episodes, tables, statistics, files.
+
+pub mod directory;
+pub mod error;
+pub mod manifest;
+pub mod replay;
+pub mod replay_files;
+pub(crate) mod table_reader;
+
+use crate::agent::Agent;
+use crate::backend::gpu::{Gpu, GpuError};
+use crate::campaign::Campaign;
+use crate::controllers::{GainSet, GainsError};
+use crate::results;
+use crate::results::sensitivity;
+use crate::results::sensitivity::{RankedCondition, WorstEpisode};
+use crate::results::{MetricQuantiles, PairedComparison, Screening};
+use crate::simulation::cross_check::{CrossCheck, cross_check};
+use crate::simulation::{Engine, Flight, FlightError, Settings, fly, open};
+use directory::OutputDir;
+use error::{MANIFEST, OutputError};
+use manifest::{GIT_REVISION, Manifest, campaign_hash};
+use std::path::PathBuf;
+use std::time::Instant;
+use thiserror::Error;
+
+/// Why a run ended early.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// No gains.
+    #[error(transparent)]
+    Gains(#[from] GainsError),
+    /// No directory to write.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Nothing flown.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+    /// Fewer episodes flown than the directory holds already.
+    #[error(
+        "{reason}; {flown} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
+        path.display()
+    )]
+    Interrupted {
+        /// Why no more were flown.
+        reason: GpuError,
+        /// Episodes that were flown.
+        flown: u32,
+        /// The directory.
+        path: PathBuf,
+        /// Episodes that it holds.
+        earlier: u32,
+    },
+    /// The manifest cannot be encoded.
+    #[error("the manifest cannot be encoded")]
+    Manifest(#[from] serde_json::Error),
+}
+
+/// What a run found.
+#[derive(Debug)]
+pub struct Findings {
+    /// How every controller fared.
+    pub summary: Vec<MetricQuantiles>,
+    /// How every pair compares.
+    pub comparisons: Vec<PairedComparison>,
+    /// What each stratum does to each controller.
+    pub screenings: Vec<Screening>,
+    /// What each condition does to each controller and pair.
+    pub ranking: Vec<RankedCondition>,
+    /// The worst episodes of each controller.
+    pub worst: Vec<WorstEpisode>,
+    /// How it was found, and what became of the requirements.
+    pub manifest: Manifest,
+}
+
+/// What a run is at, told while it goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress {
+    /// The gains are synthesized or read.
+    Gains,
+    /// The flight begins.
+    Flight,
+    /// So many more episodes have been flown.
+    Flown(u32),
+    /// Some episodes fly again on the reference.
+    CrossCheck,
+    /// Intervals and tests.
+    Statistics,
+    /// Files.
+    Writing,
+}
+
+/// What a run does beside flying.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Extras {
+    /// Whether the two big tables are written as CSV too.
+    pub csv: bool,
+    /// Episodes that are flown again on the reference; [`GPU_CROSS_CHECK`] on a GPU and none on the CPU if not given.
+    pub cross_check: Option<u32>,
+}
+
+/// Episodes of a GPU's run that are flown again on the reference, if nothing else is asked for.
+pub const GPU_CROSS_CHECK: u32 = 32;
+
+/// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the findings
+/// say so. `told` hears what the run is at.
+///
+/// # Errors
+/// If gains cannot be had, nothing can be flown, or files cannot be written.
+pub fn run(
+    campaign: &Campaign,
+    settings: &Settings,
+    out: &OutputDir,
+    extras: Extras,
+    told: &(dyn Fn(Progress) + Sync),
+) -> Result<Findings, RunError> {
+    let (gpu, notes) = open(settings)?;
+    run_on(campaign, settings, gpu.as_ref(), notes, out, extras, told)
+}
+
+/// [`run`] on a device at hand, to test what becomes of a run whose device fails.
+///
+/// # Errors
+/// As [`run`].
+#[doc(hidden)]
+pub fn run_on(
+    campaign: &Campaign,
+    settings: &Settings,
+    gpu: Option<&Gpu>,
+    mut notes: Vec<String>,
+    out: &OutputDir,
+    extras: Extras,
+    told: &(dyn Fn(Progress) + Sync),
+) -> Result<Findings, RunError> {
+    let start = Instant::now();
+    told(Progress::Gains);
+    let gains = GainSet::obtain(campaign)?;
+    let synthesis_s = start.elapsed().as_secs_f64();
+
+    told(Progress::Flight);
+    let flown = |episodes| told(Progress::Flown(episodes));
+    let flight = fly(campaign, &gains, settings, gpu, &flown)?;
+    notes.extend(flight.notes.iter().cloned());
+    let start = Instant::now();
+    told(Progress::CrossCheck);
+    let (cross_check, cross_check_missing) =
+        match checked(campaign, &gains, settings, gpu, &flight, extras.cross_check) {
+            Ok(check) => (check, None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+    let Flight {
+        tables,
+        watch,
+        mut times,
+        legs,
+        interrupted,
+        ..
+    } = flight;
+    times.cross_check_s = start.elapsed().as_secs_f64();
+    times.synthesis_s = synthesis_s;
+
+    let episodes = legs.iter().map(|leg| leg.episodes).sum();
+    if let Some(reason) = &interrupted
+        && let Ok(earlier) = Manifest::read(out.path())
+        && earlier.episodes > episodes
+    {
+        return Err(RunError::Interrupted {
+            reason: reason.clone(),
+            flown: episodes,
+            path: out.path().to_path_buf(),
+            earlier: earlier.episodes,
+        });
+    }
+
+    let start = Instant::now();
+    told(Progress::Statistics);
+    let summary = results::summarise(campaign, &tables.scores);
+    let comparisons = results::compare(campaign, &tables.scores);
+    let requirements = results::requirements(campaign, &tables.scores);
+    let screenings = results::screen(campaign, &tables.scores);
+    let ranking = flight
+        .pool
+        .install(|| sensitivity::rank(campaign, &tables.scores));
+    let worst = sensitivity::worst(campaign, &tables.scores);
+    times.statistics_s += start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    told(Progress::Writing);
+    out.begin()?;
+    let summary_table = results::summary_table(campaign, &summary);
+    let comparison_table = results::comparison_table(campaign, &comparisons);
+    let screening_table = results::screening_table(&screenings);
+    let ranking_table = sensitivity::ranking_table(&ranking);
+    let worst_table = sensitivity::worst_table(&worst);
+    for (name, table, with_csv) in [
+        ("episodes", &tables.episodes, extras.csv),
+        ("channels", &tables.channels, extras.csv),
+        ("summary", &summary_table, true),
+        ("comparison", &comparison_table, true),
+        ("screening", &screening_table, true),
+        ("ranking", &ranking_table, true),
+        ("worst", &worst_table, true),
+    ] {
+        // One controller has nothing to be compared with; without strata nothing is screened; where nothing varies, nothing is
+        // ranked.
+        if table.is_empty() {
+            continue;
+        }
+        out.write_parquet(&format!("{name}.parquet"), table)?;
+        if with_csv {
+            out.write_csv(&format!("{name}.csv"), table)?;
+        }
+    }
+    out.write("gains.json", &pretty(&gains.to_file(campaign))?)?;
+    times.writing_s = start.elapsed().as_secs_f64();
+    let manifest = Manifest {
+        name: campaign.name.clone(),
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        git_revision: GIT_REVISION.map(String::from),
+        campaign_path: campaign.path.display().to_string(),
+        campaign_blake3: campaign_hash(campaign),
+        campaign: campaign.text.clone(),
+        robot: match &campaign.agent {
+            Agent::Uav(_) => None,
+            Agent::Biped(biped) => Some(biped.file.text.clone()),
+        },
+        seed: campaign.seed,
+        episodes,
+        episodes_asked: campaign.episodes,
+        stopped: watch.found(campaign),
+        requirements,
+        verdict: results::verdict(&summary, &comparisons),
+        harm: results::harm(&screenings),
+        interrupted: interrupted.map(|error| error.to_string()),
+        precision: settings.precision,
+        legs,
+        notes,
+        cross_check,
+        cross_check_missing,
+        times,
+    };
+    out.write(MANIFEST, &pretty(&manifest)?)?;
+    Ok(Findings {
+        summary,
+        comparisons,
+        screenings,
+        ranking,
+        worst,
+        manifest,
+    })
+}
+
+/// The cross-check of a flight: of its first leg, on the engine that flew it.
+fn checked(
+    campaign: &Campaign,
+    gains: &GainSet,
+    settings: &Settings,
+    gpu: Option<&Gpu>,
+    flight: &Flight,
+    count: Option<u32>,
+) -> Result<Option<CrossCheck>, GpuError> {
+    let Some(leg) = flight.legs.first() else {
+        return Ok(None);
+    };
+    let default = match leg.engine {
+        Engine::Gpu { .. } => GPU_CROSS_CHECK,
+        Engine::Cpu { .. } => 0,
+    };
+    let count = count.unwrap_or(default);
+    // A GPU that failed is gone; under `auto` its note says that its episodes are not checked.
+    if count == 0 || flight.legs.len() > 1 {
+        return Ok(None);
+    }
+    let scores = &flight.tables.scores;
+    let check = || cross_check(campaign, gains, settings, leg, scores, gpu, count);
+    flight.pool.install(check).map(Some)
+}
+
+fn pretty(value: &impl serde::Serialize) -> Result<Vec<u8>, serde_json::Error> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

@@ -1,0 +1,322 @@
+//! One episode of a run again, with its trajectories.
+
+use super::error::{MANIFEST, OutputError};
+use super::manifest::Manifest;
+use crate::backend::cpu::{Cpu, Precision};
+use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
+use crate::campaign::{Campaign, CampaignError};
+use crate::controllers::{GainSet, GainsError};
+use crate::model::Shown;
+use crate::model::episode::{AgentOutcome, Snapshot};
+use crate::results::tables::Table;
+use crate::simulation::Engine;
+use crate::simulation::attenuation::{Attenuations, Witness};
+use crate::util::suggest::did_you_mean;
+use std::path::Path;
+use thiserror::Error;
+
+/// Time between two samples where none is asked for, s.
+const DEFAULT_INTERVAL_S: f64 = 0.01;
+
+/// Why an episode cannot be replayed.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// The directory holds no run.
+    #[error(transparent)]
+    Run(#[from] OutputError),
+    /// The run's campaign cannot be read any more.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    /// The run's gains cannot be read any more.
+    #[error(transparent)]
+    Gains(#[from] GainsError),
+    /// There is no such episode, controller or rate.
+    #[error("{option} {value}: {limit}; {remedy}")]
+    Usage {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// The limit that it breaks.
+        limit: String,
+        /// What to do instead.
+        remedy: String,
+    },
+}
+
+/// An episode flown again.
+#[derive(Debug)]
+pub struct Replay {
+    /// The run's campaign.
+    pub campaign: Campaign,
+    /// Index of the episode.
+    pub episode: u32,
+    /// Which of the campaign's controllers was asked for.
+    pub controller: usize,
+    /// Why it was flown in double precision on the CPU, if what flew the run is not to be had here.
+    pub stand_in: Option<String>,
+    /// How each agent ended; equal to the run's rows, bit by bit in the same arithmetic.
+    pub outcomes: Vec<AgentOutcome>,
+    /// What every agent and channel showed.
+    pub snapshots: Vec<Snapshot>,
+    /// The same episode under the campaign's other controllers, in its order, to look at side by side.
+    pub others: Vec<OtherFlight>,
+    /// What inequality (24) says about it, `[agent][channel]`, from a flight in double precision on the CPU.
+    pub attenuations: Attenuations,
+}
+
+/// The episode under a controller that was not asked for.
+#[derive(Debug)]
+pub struct OtherFlight {
+    /// Which of the campaign's controllers.
+    pub controller: usize,
+    /// How each agent ended.
+    pub outcomes: Vec<AgentOutcome>,
+    /// What every agent and channel showed.
+    pub snapshots: Vec<Snapshot>,
+}
+
+/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and under
+/// the campaign's other controllers beside it, and shows it every `interval_s` (10 ms, or as near as the step allows).
+///
+/// # Errors
+/// If the directory holds no run, or the run has no such episode or controller.
+pub fn replay(
+    dir: &Path,
+    episode: u32,
+    controller: &str,
+    interval_s: Option<f64>,
+) -> Result<Replay, ReplayError> {
+    let manifest = Manifest::read(dir)?;
+    let campaign = manifest.campaign()?;
+    if episode >= manifest.episodes {
+        return Err(ReplayError::Usage {
+            option: "--episode",
+            value: episode.to_string(),
+            limit: format!(
+                "the run has {} episodes, numbered from 0",
+                manifest.episodes
+            ),
+            remedy: format!("use 0 to {}", manifest.episodes.saturating_sub(1)),
+        });
+    }
+    let index = campaign
+        .controllers
+        .iter()
+        .position(|name| name == controller)
+        .ok_or_else(|| ReplayError::Usage {
+            option: "--controller",
+            value: controller.to_string(),
+            limit: format!(
+                "the run has no such controller, but {}",
+                campaign.controllers.join(", ")
+            ),
+            remedy: did_you_mean(
+                controller,
+                campaign.controllers.iter().map(String::as_str),
+                "name one of them",
+            ),
+        })?;
+    let every = interval_steps(&campaign, interval_s)?;
+    let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
+    let leg = manifest
+        .legs
+        .iter()
+        .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
+    let fly_one = |precision, simd, controller, every| {
+        let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
+        cpu.trace(episode, controller, every)
+    };
+    let fly = |precision, simd| -> Vec<Flown> {
+        let controllers = 0..campaign.controllers.len();
+        controllers
+            .map(|controller| fly_one(precision, simd, controller, every))
+            .collect()
+    };
+    // The reference, where what flew the run is not to be had.
+    let stand_in = |reason: String| (fly(Precision::F64, None), Some(reason));
+    let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
+        Some(Engine::Gpu { adapter, .. }) => {
+            match on_gpu(adapter, &campaign, &gains, episode, every) {
+                Ok(flown) => (flown, None),
+                Err(reason) => stand_in(reason),
+            }
+        }
+        // Other lanes round otherwise.
+        Some(&Engine::Cpu {
+            simd: Some(simd), ..
+        }) if !simd.is_available() => stand_in("this processor lacks the run's lanes".to_string()),
+        Some(&Engine::Cpu { simd, .. }) => (fly(manifest.precision, simd), None),
+        None => {
+            return Err(OutputError::NoRun {
+                path: dir.to_path_buf(),
+                reason: format!("{MANIFEST}: legs does not say what flew episode {episode}"),
+            }
+            .into());
+        }
+    };
+    let mut others: Vec<OtherFlight> = flown
+        .into_iter()
+        .enumerate()
+        .map(|(controller, (outcomes, snapshots))| OtherFlight {
+            controller,
+            outcomes,
+            snapshots,
+        })
+        .collect();
+    let OtherFlight {
+        outcomes,
+        snapshots,
+        ..
+    } = others.remove(index);
+    let witness = Witness::new(&campaign, &gains, index);
+    let attenuations = witness.of_episode(episode, || fly_one(Precision::F64, None, index, 1).1);
+    Ok(Replay {
+        campaign,
+        episode,
+        controller: index,
+        stand_in,
+        outcomes,
+        snapshots,
+        others,
+        attenuations,
+    })
+}
+
+/// The command that replays an episode of a run in a directory, as it is typed into a shell.
+#[must_use]
+pub fn command(dir: &Path, episode: u32, controller: &str) -> String {
+    let dir = dir.display().to_string();
+    // A directory is no option.
+    let dir = if dir.starts_with('-') {
+        format!("./{dir}")
+    } else {
+        dir
+    };
+    format!(
+        "urts-mc replay {} --episode {episode} --controller {}",
+        quoted(&dir),
+        quoted(controller)
+    )
+}
+
+/// A word of a POSIX shell: in single quotes if the shell would make something else of it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_string();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// How each agent ended, and what it showed.
+type Flown = (Vec<AgentOutcome>, Vec<Snapshot>);
+
+/// Flies under all controllers on the adapter of the run, or says why that cannot be.
+fn on_gpu(
+    adapter: &Adapter,
+    campaign: &Campaign,
+    gains: &GainSet,
+    episode: u32,
+    every: u32,
+) -> Result<Vec<Flown>, String> {
+    let gpu = Gpu::open(Wanted::Same(adapter)).map_err(|error| error.to_string())?;
+    let tuning = Tuning {
+        batch: Some(1),
+        ..Tuning::default()
+    };
+    let mut flyer =
+        GpuFlyer::new(&gpu, campaign, &gains.loops(), tuning).map_err(|error| error.to_string())?;
+    let mut snapshots: Vec<Vec<Snapshot>> = vec![Vec::new(); campaign.controllers.len()];
+    let flown = flyer
+        .trace(&[episode], every, &mut |instant| {
+            for (controller, snapshots) in snapshots.iter_mut().enumerate() {
+                snapshots.push(Snapshot {
+                    step: instant.step,
+                    agents: instant.agents(0, controller),
+                    internals: Vec::new(),
+                });
+            }
+        })
+        .map_err(|error| error.to_string())?;
+    let flown = flown.into_iter().next();
+    let outcomes = flown.ok_or("the adapter sent no episode back")?.outcomes;
+    Ok(outcomes.into_iter().zip(snapshots).collect())
+}
+
+/// The steps between two samples.
+fn interval_steps(campaign: &Campaign, interval_s: Option<f64>) -> Result<u32, ReplayError> {
+    let step_s = campaign.time.step_s;
+    let steps = f64::from(campaign.time.steps);
+    let every = match interval_s {
+        None => (DEFAULT_INTERVAL_S / step_s).round().clamp(1.0, steps),
+        Some(interval_s) => interval_s / step_s,
+    };
+    // A decimal multiple of the step is one up to rounding.
+    let whole = (every - every.round()).abs() < 1e-6 * every;
+    if !(whole && every.round() >= 1.0 && every.round() <= steps) {
+        return Err(ReplayError::Usage {
+            option: "--interval",
+            value: interval_s.unwrap_or(DEFAULT_INTERVAL_S).to_string(),
+            limit: format!(
+                "samples are whole steps of {step_s} s apart, within {} s",
+                steps * step_s
+            ),
+            remedy: "use a multiple of the step".to_string(),
+        });
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked to lie within the steps"
+    )]
+    Ok(every.round() as u32)
+}
+
+impl Replay {
+    /// The trajectories as a table: a row per instant, agent and channel.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let mut table = Table::default();
+        for snapshot in &self.snapshots {
+            for (agent, channels) in (0u64..).zip(&snapshot.agents) {
+                for (channel, shown) in self.campaign.channels().iter().zip(channels) {
+                    let Shown {
+                        r,
+                        x,
+                        e,
+                        e_rate,
+                        e_hat,
+                        f1,
+                        f1_hat,
+                        f2,
+                        f2_hat,
+                        u,
+                    } = *shown;
+                    let mut row = table.row();
+                    row.real(
+                        || "t_s".into(),
+                        f64::from(snapshot.step) * self.campaign.time.step_s,
+                    )
+                    .count(|| "agent".into(), agent)
+                    .name(|| "channel".into(), channel.clone());
+                    for (name, value) in [
+                        ("r", r),
+                        ("x", x),
+                        ("e", e),
+                        ("e_rate", e_rate),
+                        ("e_hat", e_hat),
+                        ("f1", f1),
+                        ("f1_hat", f1_hat),
+                        ("f2", f2),
+                        ("f2_hat", f2_hat),
+                        ("u", u),
+                    ] {
+                        row.real(|| name.into(), value);
+                    }
+                }
+            }
+        }
+        table
+    }
+}

@@ -1,0 +1,123 @@
+//! Where (24) applies, as far as the campaign and the draw tell: faults that are continuously differentiable in time.
+
+use super::NotApplicable;
+use crate::agent::ActuationKind;
+use crate::agent::Agent;
+use crate::agent::robot::LEG_JOINTS;
+use crate::campaign::{
+    Campaign, DisturbanceKind, Fault, FaultKind, FaultTarget, IntegralKind, Link, Time,
+};
+use crate::draw::{AgentDraw, FaultDraw};
+
+/// What keeps (24) from saying anything about a channel of an agent, if anything does.
+///
+/// Other agents are none: they act through their positions, which are smooth whatever strikes them.
+#[must_use]
+pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option<NotApplicable> {
+    if campaign.agent.actuation() == ActuationKind::Thrust {
+        return Some(NotApplicable::CommandFilter);
+    }
+    let control = &campaign.control;
+    if control.delay_s.is_some()
+        || control.hold_steps > 1
+        || control.integral == IntegralKind::Sensor
+    {
+        return Some(NotApplicable::LoopOptions);
+    }
+    let rough = |kind: DisturbanceKind| {
+        let reaches = |struck| kind.acts_on(struck) && command_meets(campaign, struck, channel);
+        !is_smooth_force(kind) && (0..campaign.channels().len()).any(reaches)
+    };
+    for (entry, disturbance) in campaign.disturbances.iter().enumerate() {
+        if rough(disturbance.kind) {
+            let kind = disturbance.kind.name();
+            return Some(NotApplicable::RoughDisturbance { entry, kind });
+        }
+    }
+    let rough = |&(_, (fault, own)): &(usize, (&Fault, &FaultDraw))| {
+        (0..own.strikes.len())
+            .any(|struck| own.strikes[struck] && meets(campaign, fault, struck, channel))
+            && !is_smooth(fault, own, campaign.time)
+    };
+    let mut faults = campaign.faults.iter().zip(&draw.faults).enumerate();
+    faults
+        .find(rough)
+        .map(|(entry, (fault, _))| NotApplicable::RoughFault {
+            entry,
+            kind: fault.kind.name(),
+        })
+}
+
+/// Whether a fault as drawn is continuously differentiable in time from t = 0 on. A kind that is not named here is not.
+#[must_use]
+pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
+    // All fields by name: whoever adds one decides here what it does to smoothness.
+    let Fault {
+        name: _,
+        target: _,
+        link: _,
+        kind,
+        probability: _,
+        background: _,
+        channels: _,
+        onset_s: _,
+        duration_s: _,
+        ramp_s: _,
+        parameters: _,
+    } = fault;
+    let FaultDraw {
+        strikes: _,
+        onset_s,
+        duration_s,
+        ramp_s,
+        parameters: _,
+    } = draw;
+    let onset = time.onset_step(*onset_s);
+    match kind {
+        _ if onset >= time.steps => true,
+        _ if duration_s.is_finite() || *ramp_s > 0.0 => false,
+        // A constant share or offset, and smooth waves, that are there from the start.
+        FaultKind::LossOfEffectiveness
+        | FaultKind::Bias
+        | FaultKind::FalseData
+        | FaultKind::Oscillatory
+        | FaultKind::SmoothedSquare
+        | FaultKind::Mass
+        | FaultKind::Inertia
+        | FaultKind::CenterOfMass
+        | FaultKind::Payload => onset == 0,
+        // What comes later is not smooth unless it is named above.
+        _ => false,
+    }
+}
+
+/// Whether a disturbance is continuously differentiable in time. Turbulence is not, nor is the ground's reaction: feet lift and
+/// touch down.
+fn is_smooth_force(kind: DisturbanceKind) -> bool {
+    match kind {
+        // A gust begins and ends with a rate of zero, and so does a jet at the height of its rotors.
+        DisturbanceKind::Sine
+        | DisturbanceKind::Constant
+        | DisturbanceKind::Gust1Cosine
+        | DisturbanceKind::RotorVortex => true,
+        DisturbanceKind::Dryden | DisturbanceKind::GroundReaction => false,
+    }
+}
+
+/// Whether a jump of a fault on channel `struck` is a jump of f1 or f2 of channel `channel`. The torques of a leg act on all
+/// its joints at once; a UAV's channels, and whatever passes through a sensor, act on others through integrals only.
+fn meets(campaign: &Campaign, fault: &Fault, struck: usize, channel: usize) -> bool {
+    match (fault.target, fault.link) {
+        (FaultTarget::Plant, _) => true,
+        (_, Link::Measurement) => struck == channel,
+        (_, Link::Command) => command_meets(campaign, struck, channel),
+    }
+}
+
+/// The same for whatever acts like a command.
+fn command_meets(campaign: &Campaign, struck: usize, channel: usize) -> bool {
+    match &campaign.agent {
+        Agent::Uav(_) => struck == channel,
+        Agent::Biped(_) => struck / LEG_JOINTS == channel / LEG_JOINTS,
+    }
+}

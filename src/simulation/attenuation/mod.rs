@@ -1,0 +1,323 @@
+//! The theorem beside the experiment: the attenuation that a flight under the fault-tolerant controller shows, inequality (24)
+//! of the paper, beside the level that its gains certify.
+//!
+//! Per agent and channel: the square root of the left side of (24) without V(0), and whether (24) holds with it. The theorem
+//! is about linear channels whose faults move smoothly; where a flight is something else, this says so and why.
+
+mod applicability;
+mod channel;
+
+pub use applicability::{is_smooth, obstacle};
+pub use channel::{Attenuation, Sample, Stretch, Theorem};
+
+use crate::agent::ChannelGroup;
+use crate::backend::cpu::{Cpu, Precision};
+use crate::campaign::Campaign;
+use crate::controllers::{ChannelController, FlyingController, GainSet};
+use crate::draw::{Episode, draw};
+use crate::model::episode::Snapshot;
+use crate::synthesis::{ChannelDesign, poles};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A pole times a step at which the central differences of its decay are right to 2 %.
+const RESOLVED: f64 = 0.25;
+
+/// Why (24) says nothing about a channel of a flight.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum NotApplicable {
+    /// A PID.
+    #[error("the controller does not estimate the faults")]
+    NoEstimate,
+    /// Gains of an older run.
+    #[error("gains.json holds no certificate of these gains")]
+    NoCertificate,
+    /// A certificate that does not verify.
+    #[error("the certificate in gains.json does not belong to these gains and weights")]
+    OtherCertificate,
+    /// Thrust along the body axis.
+    #[error("under thrust the command filter stands between u_fb and the plant")]
+    CommandFilter,
+    /// What (19) does not know.
+    #[error(
+        "[control] changes the loop: (19) knows no delay, no sampled controller and no measured integral"
+    )]
+    LoopOptions,
+    /// A disturbance that is not differentiable.
+    #[error("disturbance {entry} ({kind}) is not continuously differentiable in time")]
+    RoughDisturbance {
+        /// Which of the campaign.
+        entry: usize,
+        /// What it is.
+        kind: &'static str,
+    },
+    /// A fault that is not differentiable.
+    #[error("fault {entry} ({kind}) is not continuously differentiable in time")]
+    RoughFault {
+        /// Which of the campaign.
+        entry: usize,
+        /// What it is.
+        kind: &'static str,
+    },
+    /// A flight that left the numbers.
+    #[error("the flight is not finite from {t_s:.3} s on")]
+    NotFinite {
+        /// Since when, s.
+        t_s: f64,
+    },
+    /// Limits, a delay or a hold.
+    #[error("the feedback is not K ehat at {t_s:.3} s: a limit cuts it, or it is held")]
+    OtherFeedback {
+        /// When first, s.
+        t_s: f64,
+    },
+    /// An integral that is measured.
+    #[error("the first output is not the integral of e")]
+    OtherIntegral,
+    /// Faults too fast for the step.
+    #[error("the step does not resolve how the faults move; use a smaller step_s")]
+    Unresolved,
+    /// No fault at all.
+    #[error("there is nothing to attenuate: v is zero")]
+    NoModelError,
+}
+
+/// What (24) says about each channel of a flight, `[agent][channel]`.
+pub type Attenuations = Vec<Vec<Result<Attenuation, NotApplicable>>>;
+
+/// The trajectory of an episode in double precision, as (24) needs it.
+#[derive(Debug, Default)]
+pub struct Trajectory {
+    /// The episode at every step.
+    pub whole: Vec<Snapshot>,
+    /// Its start at every step of a [`Start`], where the campaign's own step does not resolve it.
+    pub start: Vec<Snapshot>,
+}
+
+/// The start of an episode in smaller steps: the fast poles of the loop make f1 move within a few milliseconds there, and the
+/// taps repeat that until the last of them has begun.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Steps for each of the campaign's.
+    finer: u32,
+    /// Steps of the campaign that it lasts.
+    steps: u32,
+}
+
+impl Start {
+    /// The start under a controller; none where the campaign's step resolves it.
+    #[must_use]
+    pub fn of(campaign: &Campaign, controller: &FlyingController) -> Option<Self> {
+        let poles = controller
+            .groups
+            .iter()
+            .flat_map(|own| poles(&own.loop_gains));
+        let fastest = poles.map(|pole| pole.norm()).fold(0.0, f64::max);
+        let finer = (fastest * campaign.time.step_s / RESOLVED).ceil();
+        let last_tap = |design: &ChannelDesign| {
+            let [taps1, taps2] = design.smoothing.taps();
+            taps1.max(taps2) as f64 * design.smoothing.spacing_s
+        };
+        let lasts_s = campaign.synthesis.designs.iter().map(last_tap);
+        let steps = campaign.time.onset_step(lasts_s.fold(0.0, f64::max));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a step at which the integration is stable is at most three times what resolves it"
+        )]
+        (finer > 1.0).then_some(Self {
+            finer: finer as u32,
+            steps: steps.min(campaign.time.steps),
+        })
+    }
+
+    /// A campaign that flies the start and nothing more. What is drawn stays the same.
+    #[must_use]
+    pub fn campaign(self, whole: &Campaign) -> Campaign {
+        let mut campaign = whole.clone();
+        campaign.time.step_s /= f64::from(self.finer);
+        campaign.time.steps = self.finer * self.steps;
+        campaign.time.settle_step = 0;
+        campaign
+    }
+}
+
+/// A controller whose flights (24) is asked about.
+pub struct Witness<'a> {
+    campaign: &'a Campaign,
+    controller: &'a FlyingController,
+    index: usize,
+    /// Of each channel group.
+    theorems: Vec<Result<Theorem, NotApplicable>>,
+    start: Option<Start>,
+    /// What flies the start.
+    flyer: Option<Cpu>,
+}
+
+impl<'a> Witness<'a> {
+    /// Prepares controller number `index` of `gains`.
+    #[must_use]
+    pub fn new(campaign: &'a Campaign, gains: &'a GainSet, index: usize) -> Self {
+        let controller = &gains.controllers[index];
+        let of_groups = controller.groups.iter().zip(&campaign.synthesis.designs);
+        let start = Start::of(campaign, controller).filter(|_| controller.is_certified());
+        let flyer = start.map(|start| {
+            let campaign = start.campaign(campaign);
+            Cpu::new(&campaign, &gains.loops(), Precision::F64, None)
+        });
+        Self {
+            campaign,
+            controller,
+            index,
+            theorems: of_groups
+                .map(|(own, design)| theorem(own, design))
+                .collect(),
+            start,
+            flyer,
+        }
+    }
+
+    /// What (24) says about an episode; `whole`, its trajectory at every step in double precision, is asked for only where
+    /// there may be something to say.
+    #[must_use]
+    pub fn of_episode(&self, episode: u32, whole: impl FnOnce() -> Vec<Snapshot>) -> Attenuations {
+        let drawn = draw(self.campaign, episode);
+        let known = self.known(&drawn);
+        let trajectory = if known.iter().flatten().any(Result::is_ok) {
+            let start = self.flyer.as_ref();
+            Trajectory {
+                whole: whole(),
+                start: start.map_or(Vec::new(), |cpu| cpu.trace(episode, self.index, 1).1),
+            }
+        } else {
+            Trajectory::default()
+        };
+        self.judge(&drawn, &trajectory)
+    }
+
+    /// What (24) says about an episode with this trajectory.
+    #[must_use]
+    pub fn judge(&self, episode: &Episode, trajectory: &Trajectory) -> Attenuations {
+        let step_s = self.campaign.time.step_s;
+        let of_channel = |agent, channel, theorem: &Theorem| {
+            let samples = |snapshots: &[Snapshot]| -> Vec<Sample> {
+                let of_instant = |snapshot| sample(snapshot, agent, channel);
+                snapshots.iter().map(of_instant).collect()
+            };
+            let (whole, first) = (samples(&trajectory.whole), samples(&trajectory.start));
+            let stretch = |samples, step_s, from| Stretch {
+                step_s,
+                samples,
+                from,
+            };
+            match self.start {
+                None => theorem.attenuation(&[stretch(&whole, step_s, 0)]),
+                Some(Start { finer, steps }) => theorem.attenuation(&[
+                    stretch(&first, step_s / f64::from(finer), 0),
+                    stretch(&whole, step_s, steps as usize),
+                ]),
+            }
+        };
+        let of_agent = |(agent, channels): (usize, Vec<Result<&Theorem, NotApplicable>>)| {
+            let channels = channels.into_iter().enumerate();
+            channels
+                .map(|(channel, theorem)| of_channel(agent, channel, theorem?))
+                .collect()
+        };
+        let known = self.known(episode).into_iter().enumerate();
+        known.map(of_agent).collect()
+    }
+
+    /// The theorem of each channel, or what is known before the flight to keep it from saying anything: `[agent][channel]`.
+    fn known(&self, episode: &Episode) -> Vec<Vec<Result<&Theorem, NotApplicable>>> {
+        let of_channel = |agent: usize, channel: usize| {
+            let group = self.campaign.group_of(channel);
+            let theorem = self.theorems[group].as_ref().map_err(Clone::clone)?;
+            obstacle(self.campaign, &episode.agents[agent], channel).map_or(Ok(theorem), Err)
+        };
+        let channels = self.campaign.channels().len();
+        let of_agent = |agent| {
+            (0..channels)
+                .map(|channel| of_channel(agent, channel))
+                .collect()
+        };
+        (0..self.campaign.team).map(of_agent).collect()
+    }
+
+    /// Sums up what it says about some episodes, a row per channel group.
+    #[must_use]
+    pub fn by_group(&self, flights: &[Attenuations]) -> Vec<GroupAttenuation> {
+        let groups = self.campaign.channel_groups().into_iter();
+        groups
+            .zip(&self.controller.groups)
+            .map(|(group, own)| GroupAttenuation::of(&self.controller.name, &group, own, flights))
+            .collect()
+    }
+}
+
+fn theorem(own: &ChannelController, design: &ChannelDesign) -> Result<Theorem, NotApplicable> {
+    if own.gains.is_pid() {
+        return Err(NotApplicable::NoEstimate);
+    }
+    let certificate = own.certificate().ok_or(NotApplicable::NoCertificate)?;
+    Theorem::new(design, &own.gains, certificate)
+}
+
+fn sample(snapshot: &Snapshot, agent: usize, channel: usize) -> Sample {
+    let shown = &snapshot.agents[agent][channel];
+    let held = &snapshot.internals[agent][channel];
+    Sample {
+        error: [held.integral, shown.e, shown.e_rate],
+        estimate: held.observer,
+        faults: [shown.f1, shown.f2],
+        told: held.told,
+    }
+}
+
+/// What (24) says about one channel group of some flights under one controller.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupAttenuation {
+    /// The controller.
+    pub controller: String,
+    /// The channels.
+    pub group: String,
+    /// Channels of agents of episodes that were looked at.
+    pub flown: usize,
+    /// Those among them to which (24) applies.
+    pub applicable: usize,
+    /// Those among these for which it does not hold.
+    pub violated: usize,
+    /// Largest level among them; none if it applies to none.
+    pub largest: Option<f64>,
+    /// The certified level.
+    pub certified: Option<f64>,
+    /// Why it does not apply to the first to which it does not.
+    pub obstacle: Option<String>,
+}
+
+impl GroupAttenuation {
+    fn of(
+        controller: &str,
+        group: &ChannelGroup,
+        own: &ChannelController,
+        flights: &[Attenuations],
+    ) -> Self {
+        let agents = flights.iter().flatten();
+        let all: Vec<_> = agents
+            .flat_map(|channels| &channels[group.channels.clone()])
+            .collect();
+        let applicable = || all.iter().filter_map(|found| found.as_ref().ok());
+        let mut obstacles = all.iter().filter_map(|found| found.as_ref().err());
+        Self {
+            controller: controller.to_string(),
+            group: group.role.name().to_string(),
+            flown: all.len(),
+            applicable: applicable().count(),
+            violated: applicable().filter(|found| !found.holds()).count(),
+            largest: applicable().map(Attenuation::level).reduce(f64::max),
+            certified: own.certificate().map(|certificate| certificate.rho),
+            obstacle: obstacles.next().map(ToString::to_string),
+        }
+    }
+}

@@ -1,0 +1,373 @@
+//! Flying all episodes of a campaign on the backends that are to be had, into tables.
+
+pub mod attenuation;
+pub mod cross_check;
+pub mod stopping;
+mod times;
+
+pub use times::Times;
+
+use crate::backend::Flown;
+use crate::backend::cpu::{Cpu, Precision, Simd};
+use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuFlyer, GpuTimes, Tuning, Wanted};
+use crate::campaign::Campaign;
+use crate::controllers::GainSet;
+use crate::results::tables::{Status, Tables};
+use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
+use stopping::Watch;
+use thiserror::Error;
+
+/// Episodes of the CPU between two additions to the tables: enough to keep many cores busy, few enough to keep memory small.
+const CPU_BATCH: u32 = 2048;
+
+/// Episodes of the CPU between two additions, at least, where they may be the last: sixteen lanes on each of sixteen threads.
+const LOOK_BATCH: u32 = 256;
+
+/// Where the episodes are to fly.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Backend {
+    /// On a hardware GPU if there is one, else, and if it fails, on the CPU.
+    Auto,
+    /// On a GPU only: the best hardware one, or that of a name.
+    Gpu {
+        /// Part of the adapter's name; software adapters are taken only by name.
+        adapter: Option<String>,
+    },
+    /// On the CPU.
+    Cpu,
+}
+
+/// How a campaign is to be flown.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Where.
+    pub backend: Backend,
+    /// Number format of the episode loop; double precision flies on the CPU.
+    pub precision: Precision,
+    /// Layout of the CPU's single-precision episodes; the widest of this processor if not given.
+    pub simd: Option<Simd>,
+    /// Threads; all cores if zero.
+    pub threads: usize,
+    /// How a GPU's work is cut up.
+    pub tuning: Tuning,
+}
+
+impl Settings {
+    /// On the CPU, with all its cores and the widest lanes.
+    #[must_use]
+    pub fn cpu(precision: Precision) -> Self {
+        Self {
+            backend: Backend::Cpu,
+            precision,
+            simd: None,
+            threads: 0,
+            tuning: Tuning::default(),
+        }
+    }
+}
+
+/// Why nothing could be flown.
+#[derive(Debug, Error)]
+pub enum FlightError {
+    /// No threads.
+    #[error("--threads {threads}: the threads cannot be started ({source}); use fewer")]
+    Threads {
+        /// As many as were asked for.
+        threads: usize,
+        /// Why.
+        source: rayon::ThreadPoolBuildError,
+    },
+    /// No GPU, though one was asked for.
+    #[error(transparent)]
+    NoGpu(GpuError),
+    /// The GPU failed before it had finished a batch.
+    #[error("{0}; use --backend cpu")]
+    Gpu(GpuError),
+}
+
+/// Consecutive episodes, and what flew them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Leg {
+    /// The first episode.
+    pub first: u32,
+    /// How many.
+    pub episodes: u32,
+    /// What flew them.
+    #[serde(flatten)]
+    pub engine: Engine,
+}
+
+/// What flies episodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "backend", rename_all = "lowercase")]
+pub enum Engine {
+    /// The CPU backend.
+    Cpu {
+        /// Layout of single-precision episodes.
+        simd: Option<Simd>,
+        /// Threads.
+        threads: usize,
+    },
+    /// The GPU backend, in single precision.
+    Gpu {
+        /// The adapter.
+        adapter: Adapter,
+        /// Episodes of a batch.
+        batch: u32,
+        /// Times.
+        gpu_times: GpuTimes,
+    },
+}
+
+impl fmt::Display for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cpu { simd, threads } => {
+                let lanes = simd.map_or(String::new(), |simd| format!(" ({simd:?})"));
+                let threads = match threads {
+                    1 => "1 thread".to_string(),
+                    many => format!("{many} threads"),
+                };
+                write!(f, "the CPU{}, {threads}", lanes.to_lowercase())
+            }
+            Self::Gpu { adapter, .. } => write!(f, "{} ({})", adapter.name, adapter.driver),
+        }
+    }
+}
+
+/// The tables of a flown campaign, and how they came about.
+pub struct Flight {
+    /// The tables.
+    pub tables: Tables,
+    /// What has ended the run early, if it has.
+    pub watch: Watch,
+    /// Times so far.
+    pub times: Times,
+    /// What flew, in the order of the episodes; together they are the first episodes of the campaign.
+    pub legs: Vec<Leg>,
+    /// What the user should know of the choice of the backend.
+    pub notes: Vec<String>,
+    /// Why episodes are missing, if they are.
+    pub interrupted: Option<GpuError>,
+    /// The threads that flew.
+    pub pool: ThreadPool,
+}
+
+impl Flight {
+    /// Episodes that were flown.
+    #[must_use]
+    pub fn episodes(&self) -> u32 {
+        self.legs.iter().map(|leg| leg.episodes).sum()
+    }
+}
+
+/// The device to fly on, if any, and what there is to know about the choice.
+///
+/// # Errors
+/// If a GPU is asked for and is not to be had.
+pub fn open(settings: &Settings) -> Result<(Option<Gpu>, Vec<String>), FlightError> {
+    let opened = match &settings.backend {
+        Backend::Cpu => return Ok((None, Vec::new())),
+        Backend::Gpu { adapter: None } => {
+            Gpu::open(Wanted::Hardware).map_err(FlightError::NoGpu)?
+        }
+        Backend::Gpu {
+            adapter: Some(name),
+        } => Gpu::open(Wanted::Named(name)).map_err(FlightError::NoGpu)?,
+        // Double precision, or a layout of lanes, says that the CPU is meant.
+        Backend::Auto if settings.precision == Precision::F64 || settings.simd.is_some() => {
+            return Ok((None, Vec::new()));
+        }
+        Backend::Auto => match Gpu::open(Wanted::Hardware) {
+            Ok(gpu) => gpu,
+            Err(GpuError::NoHardware { .. }) => return Ok((None, Vec::new())),
+            Err(error) => return Ok((None, vec![format!("the CPU flew all episodes: {error}")])),
+        },
+    };
+    Ok((Some(opened), Vec::new()))
+}
+
+/// Flies a campaign with gains at hand, on a GPU if one is given; `done` is told of finished episodes.
+///
+/// # Errors
+/// If the threads cannot be started, or a GPU is asked for and flies nothing. A GPU that fails later leaves the episodes that
+/// it finished: the CPU flies the others if it may, else they are missing and the flight says why.
+pub fn fly(
+    campaign: &Campaign,
+    gains: &GainSet,
+    settings: &Settings,
+    gpu: Option<&Gpu>,
+    done: &(dyn Fn(u32) + Sync),
+) -> Result<Flight, FlightError> {
+    let threads = settings.threads;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|source| FlightError::Threads { threads, source })?;
+    let mut flight = Flight {
+        tables: Tables::new(campaign),
+        watch: Watch::new(campaign),
+        times: Times::default(),
+        legs: Vec::new(),
+        notes: Vec::new(),
+        interrupted: None,
+        pool,
+    };
+    // Of a batch that a GPU does not finish, episodes were told as done already.
+    let told = AtomicU32::new(0);
+    if let Some(gpu) = gpu {
+        let failure = flight.on_gpu(gpu, campaign, gains, settings, &|episodes| {
+            told.fetch_add(episodes, Ordering::Relaxed);
+            done(episodes);
+        });
+        let flown = flight.episodes();
+        told.fetch_sub(flown, Ordering::Relaxed);
+        match failure {
+            None => {}
+            Some(error) if settings.backend == Backend::Auto => flight.notes.push(format!(
+                "the GPU failed after {flown} of {} episodes, which are not cross-checked, and the CPU flew the others: {error}",
+                campaign.episodes
+            )),
+            Some(error) if flown == 0 => return Err(FlightError::Gpu(error)),
+            Some(error) => {
+                flight.interrupted = Some(error);
+                return Ok(flight);
+            }
+        }
+    }
+    flight.on_cpu(campaign, gains, settings, &|episodes| {
+        let take = |told: u32| Some(told - told.min(episodes));
+        let told = told.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
+        done(episodes - told.unwrap_or_default().min(episodes));
+    });
+    Ok(flight)
+}
+
+impl Flight {
+    /// Episodes in the tables.
+    fn recorded(&self) -> u32 {
+        u32::try_from(self.tables.scores.episodes()).unwrap_or(u32::MAX)
+    }
+
+    /// Flies on a GPU, batch by batch, until all are done or it fails.
+    fn on_gpu(
+        &mut self,
+        gpu: &Gpu,
+        campaign: &Campaign,
+        gains: &GainSet,
+        settings: &Settings,
+        done: &(dyn Fn(u32) + Sync),
+    ) -> Option<GpuError> {
+        let start = Instant::now();
+        let mut flyer = match GpuFlyer::new(gpu, campaign, &gains.loops(), settings.tuning) {
+            Ok(flyer) => flyer,
+            Err(error) => return Some(error),
+        };
+        self.times.loop_s += start.elapsed().as_secs_f64();
+        let (tables, watch) = (&mut self.tables, &mut self.watch);
+        let (times, pool) = (&mut self.times, &self.pool);
+        let (mut next, mut failure) = (0, None);
+        let enough = AtomicBool::new(false);
+        let seen = &enough;
+        // The tables take in a batch while the next one flies; at most one waits, so memory stays small.
+        std::thread::scope(|scope| {
+            let (sender, batches) = mpsc::sync_channel::<Vec<Flown>>(1);
+            let filling = scope.spawn(move || {
+                let mut spent_s = 0.0;
+                for batch in batches {
+                    spent_s += fill(tables, watch, campaign, &batch);
+                    seen.store(watch.is_done(), Ordering::Relaxed);
+                }
+                spent_s
+            });
+            let more = || !enough.load(Ordering::Relaxed);
+            while next < campaign.episodes && failure.is_none() && more() {
+                let until = next.saturating_add(flyer.batch()).min(campaign.episodes);
+                let start = Instant::now();
+                let flown = pool.install(|| flyer.fly(next..until, done));
+                times.loop_s += start.elapsed().as_secs_f64();
+                match flown.map(|flown| sender.send(flown)) {
+                    Ok(Ok(())) => next = until,
+                    // Nobody receives any more: filling has panicked, which is passed on below.
+                    Ok(Err(_)) => break,
+                    Err(error) => failure = Some(error),
+                }
+            }
+            drop(sender);
+            let filled = filling.join();
+            times.statistics_s += filled.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        });
+        // What was flown beyond the end is in no table.
+        let episodes = self.recorded();
+        if episodes > 0 {
+            self.legs.push(Leg {
+                first: 0,
+                episodes,
+                engine: Engine::Gpu {
+                    adapter: gpu.adapter().clone(),
+                    batch: flyer.batch(),
+                    gpu_times: flyer.times(),
+                },
+            });
+        }
+        failure.filter(|_| !self.watch.is_done())
+    }
+
+    /// Flies the episodes that are left on the CPU.
+    fn on_cpu(
+        &mut self,
+        campaign: &Campaign,
+        gains: &GainSet,
+        settings: &Settings,
+        done: &(dyn Fn(u32) + Sync),
+    ) {
+        let first = self.episodes();
+        if first == campaign.episodes || self.watch.is_done() {
+            return;
+        }
+        let start = Instant::now();
+        let cpu = Cpu::new(campaign, &gains.loops(), settings.precision, settings.simd);
+        self.times.loop_s += start.elapsed().as_secs_f64();
+        let batch = match &campaign.stop {
+            None => CPU_BATCH,
+            // Little is flown in vain if batches are as short as the threads and the looks allow.
+            Some(stop) => stop.every.clamp(LOOK_BATCH, CPU_BATCH),
+        };
+        let mut next = first;
+        while next < campaign.episodes && !self.watch.is_done() {
+            let until = next.saturating_add(batch).min(campaign.episodes);
+            let start = Instant::now();
+            let flown = self.pool.install(|| cpu.fly(next..until, done));
+            self.times.loop_s += start.elapsed().as_secs_f64();
+            self.times.statistics_s += fill(&mut self.tables, &mut self.watch, campaign, &flown);
+            next = until;
+        }
+        self.legs.push(Leg {
+            first,
+            episodes: self.recorded() - first,
+            engine: Engine::Cpu {
+                simd: cpu.simd(),
+                threads: self.pool.current_num_threads(),
+            },
+        });
+    }
+}
+
+/// Adds flown episodes to the tables, until the watch has seen enough; the time that it took, s.
+fn fill(tables: &mut Tables, watch: &mut Watch, campaign: &Campaign, flown: &[Flown]) -> f64 {
+    let start = Instant::now();
+    for episode in flown {
+        if watch.is_done() {
+            break;
+        }
+        tables.add(campaign, episode);
+        let status = &tables.scores.status;
+        watch.take(|controller| status[controller].last().copied().unwrap_or(Status::Ok));
+    }
+    start.elapsed().as_secs_f64()
+}

@@ -1,0 +1,5 @@
+//! Small helpers without knowledge of the domain: a list of fixed length, spelling suggestions, number formats.
+
+pub mod fixed_list;
+pub mod format;
+pub(crate) mod suggest;
