@@ -31,15 +31,15 @@ fn actuator_command(wanted: f32) -> f32 {
 }
 
 // Finds out whether the past is played in a step, and what it is at the step's start.
-fn ring_hold(ring: u32, step: u32) {
+fn delay_line_hold(ring: u32, step: u32) {
     if step > 0u {
-        pasts[ring].plays = switch_weight(COMMAND_RINGS + ring, step);
-        pasts[ring].start = ring_read(ring, step);
+        pasts[ring].plays = window_weight(COMMAND_RINGS + ring, step);
+        pasts[ring].start = delay_line_read(ring, step);
     }
 }
 
 // The past at a moment of the step where it is played, else `now`.
-fn ring_recall(ring: u32, moment: u32, now: vec2<f32>) -> vec2<f32> {
+fn delay_line_recall(ring: u32, moment: u32, now: vec2<f32>) -> vec2<f32> {
     let start = pasts[ring].start;
     let end = pasts[ring].end;
     var past = start;
@@ -49,36 +49,36 @@ fn ring_recall(ring: u32, moment: u32, now: vec2<f32>) -> vec2<f32> {
     if moment == END {
         past = end;
     }
-    return ring_or_past(ring, now, past);
+    return delay_line_or_past(ring, now, past);
 }
 
 // `past` where the past is played, else `now`.
-fn ring_or_past(ring: u32, now: vec2<f32>, past: vec2<f32>) -> vec2<f32> {
+fn delay_line_or_past(ring: u32, now: vec2<f32>, past: vec2<f32>) -> vec2<f32> {
     return select(now, past, pasts[ring].plays >= 0.5);
 }
 
 // Records what was seen at the start of a step, after which the past at its end is known.
-fn ring_record(ring: u32, step: u32, now: vec2<f32>) {
+fn delay_line_record(ring: u32, step: u32, now: vec2<f32>) {
     if RING_RECORDS[ring] || pasts[ring].plays < 0.5 {
-        let place = ring_place(ring, step);
+        let place = delay_line_place(ring, step);
         store_number(place, now.x);
         if ring >= N_COMMAND_RINGS {
             store_number(place + RING_STEPS, now.y);
         }
     }
-    pasts[ring].end = ring_read(ring, step + 1u);
+    pasts[ring].end = delay_line_read(ring, step + 1u);
 }
 
 // The sample that is as old as the ring is long; before there is one, the first.
-fn ring_read(ring: u32, step: u32) -> vec2<f32> {
-    let place = ring_place(ring, select(step, 0u, step < drawn(RINGS + ring)));
+fn delay_line_read(ring: u32, step: u32) -> vec2<f32> {
+    let place = delay_line_place(ring, select(step, 0u, step < drawn(RINGS + ring)));
     if ring >= N_COMMAND_RINGS {
         return vec2(stored_number(place), stored_number(place + RING_STEPS));
     }
     return vec2(stored_number(place), 0.0);
 }
 
-fn ring_place(ring: u32, step: u32) -> u32 {
+fn delay_line_place(ring: u32, step: u32) -> u32 {
     let of_sensors = select(0u, ring - N_COMMAND_RINGS, ring >= N_COMMAND_RINGS);
     return RINGS_STORED + (ring + of_sensors) * RING_STEPS + step % drawn(RINGS + ring);
 }

@@ -1,6 +1,6 @@
 // Twin of src/model/episode.rs, and the entry points: from draws to channels, and from their ends to outcomes.
 
-struct Setting {
+struct Uniforms {
     // Philox key.
     seed: vec2<u32>,
     settle_step: u32,
@@ -23,7 +23,7 @@ struct Span {
     output_first: u32,
 }
 
-@group(0) @binding(0) var<uniform> setting: Setting;
+@group(0) @binding(0) var<uniform> setting: Uniforms;
 @group(0) @binding(1) var<uniform> span: Span;
 // What was drawn, `[block of episodes][word][channel][agent][episode]`; all controllers read the same.
 @group(0) @binding(2) var<storage, read> draws: array<u32>;
@@ -102,7 +102,7 @@ fn resume() {
         stepped_start[EXTRA] = stored_number(CHANNEL + EXTRA);
         stepped_start[EXTRA + 1u] = stored_number(CHANNEL + EXTRA + 1u);
     }
-    signals_begin(span.first);
+    exogenous_inputs_begin(span.first);
     if REMEMBERS {
         last_command = stored_number(MEMORY);
         last_measured = vec2(stored_number(MEMORY + 1u), stored_number(MEMORY + 2u));
@@ -170,9 +170,9 @@ fn start(
     for (var k = 0u; k < 2u * N_TURBULENCES; k++) {
         store_number(TURBULENCE_STATE + k, turbulence_filter(k / 2u, 7u + k % 2u));
     }
-    signals_begin(0u);
-    signals_hold(0u, 0.0);
-    signals_evaluate(0u, START);
+    exogenous_inputs_begin(0u);
+    exogenous_inputs_hold(0u, 0.0);
+    exogenous_inputs_evaluate(0u, START);
     let integral = drawn_number(INTEGRAL);
     let error = drawn_number(ERROR);
     let rate = drawn_number(ERROR_RATE);

@@ -2,7 +2,7 @@
 // what varies within it.
 
 // A periodic signal; its list says of what shape. `held` is the amplitude of this step.
-struct Wave {
+struct Oscillation {
     inverse_smoothing: f32,
     phase: u32,
     // Turns per half step.
@@ -11,7 +11,7 @@ struct Wave {
 }
 
 // All waves, in the order of their switches.
-var<private> waves: array<Wave, max(N_WAVES, 1u)>;
+var<private> waves: array<Oscillation, max(N_WAVES, 1u)>;
 // The part of d1 that is always there.
 var<private> constant: f32;
 // Scale of the ground's reaction.
@@ -44,29 +44,29 @@ var<private> sensor_fault: f32;
 
 // Takes the signals from the draw, with their phases at the start of a step. Phases count in fixed point modulo one turn, so
 // this is exactly the sum of as many half steps.
-fn signals_begin(step: u32) {
+fn exogenous_inputs_begin(step: u32) {
     constant = drawn_number(CONSTANT);
     ground = drawn_number(GROUND);
     actuator = Actuator(1.0, 0.0, -MAX, MAX);
     for (var k = 0u; k < N_WAVES; k++) {
         let word = WAVES + 3u * k;
         let advance = drawn(word + 2u);
-        waves[k] = Wave(drawn_number(word), drawn(word + 1u) + 2u * step * advance, advance, 0.0);
+        waves[k] = Oscillation(drawn_number(word), drawn(word + 1u) + 2u * step * advance, advance, 0.0);
     }
 }
 
 // Whether a sampled controller gives a new command at the start of a step.
-fn signals_ticks(step: u32) -> bool {
+fn exogenous_inputs_ticks(step: u32) -> bool {
     return step % HOLD_STEPS == 0u;
 }
 
 // Sets what is held over step number `step`; `team` is the sum of the team's last commands.
-fn signals_hold(step: u32, team: f32) {
+fn exogenous_inputs_hold(step: u32, team: f32) {
     hold_command(step, team);
     hold_sensor(step);
     var force = constant;
     for (var k = 0u; k < N_WEIGHTS; k++) {
-        force = force + switch_at(WEIGHTS + k, step);
+        force = force + window_at(WEIGHTS + k, step);
     }
     for (var k = 0u; k < N_TURBULENCES; k++) {
         force = force + turbulence_force(k);
@@ -74,14 +74,14 @@ fn signals_hold(step: u32, team: f32) {
     held_disturbance = force;
     var grown = 1.0;
     for (var k = 0u; k < N_INERTIAS; k++) {
-        grown = grown + switch_at(INERTIAS + k, step);
+        grown = grown + window_at(INERTIAS + k, step);
     }
     inverse_inertia = own.inverse_inertia;
     if N_INERTIAS > 0u {
         inverse_inertia = own.inverse_inertia / grown;
     }
     for (var k = 0u; k < N_WAVES; k++) {
-        waves[k].held = switch_at(SINES + k, step);
+        waves[k].held = window_at(SINES + k, step);
     }
 }
 
@@ -89,78 +89,78 @@ fn signals_hold(step: u32, team: f32) {
 fn hold_command(step: u32, team: f32) {
     var gain = 1.0;
     for (var k = 0u; k < N_LOSSES; k++) {
-        gain = gain * (1.0 - switch_at(LOSSES + k, step));
+        gain = gain * (1.0 - window_at(LOSSES + k, step));
     }
     for (var k = 0u; k < N_INTERMITTENTS; k++) {
-        let lost = burst_at(INTERMITTENTS + k, step).x;
+        let lost = intermittent_window_at(INTERMITTENTS + k, step).x;
         gain = gain * (1.0 - lost);
     }
     var bias = 0.0;
     for (var k = 0u; k < N_COMMAND_BIASES; k++) {
-        bias = bias + switch_at(COMMAND_BIASES + k, step);
+        bias = bias + window_at(COMMAND_BIASES + k, step);
     }
     for (var k = 0u; k < N_LEAKS; k++) {
         let others = team - last_command;
-        bias = fma(others, switch_at(LEAKS + k, step), bias);
+        bias = fma(others, window_at(LEAKS + k, step), bias);
     }
     for (var k = 0u; k < N_HARD_OVERS; k++) {
-        let weight = switch_weight(HARD_OVERS + k, step);
+        let weight = window_weight(HARD_OVERS + k, step);
         let left = 1.0 - weight;
         gain = gain * left;
-        bias = fma(switch_value(HARD_OVERS + k), weight, bias * left);
+        bias = fma(window_value(HARD_OVERS + k), weight, bias * left);
     }
     command_gain = gain;
     command_bias = bias;
     var limit = MAX;
     for (var k = 0u; k < N_RATE_LIMITS; k++) {
-        let weight = switch_weight(RATE_LIMITS + k, step);
-        limit = lane_select_le(0.5, weight, lane_min(switch_value(RATE_LIMITS + k), limit), limit);
+        let weight = window_weight(RATE_LIMITS + k, step);
+        limit = lane_select_le(0.5, weight, lane_min(window_value(RATE_LIMITS + k), limit), limit);
     }
     slew = limit;
     var blocks = 0.0;
     for (var k = 0u; k < N_COMMAND_HOLDS; k++) {
-        blocks = lane_max(blocks, burst_at(COMMAND_HOLDS + k, step).x);
+        blocks = lane_max(blocks, intermittent_window_at(COMMAND_HOLDS + k, step).x);
     }
     blocked = blocks;
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
-        ring_hold(k, step);
+        delay_line_hold(k, step);
     }
 }
 
 fn hold_sensor(step: u32) {
     var sensor = 0.0;
     for (var k = 0u; k < N_SENSOR_BIASES; k++) {
-        sensor = sensor + switch_at(SENSOR_BIASES + k, step);
+        sensor = sensor + window_at(SENSOR_BIASES + k, step);
     }
     for (var k = 0u; k < N_NOISES; k++) {
         if step % 4u == 0u {
             noise_draw(k, step / 4u);
         }
         let sample = stored_number(SAMPLES + 4u * k + step % 4u);
-        sensor = fma(sample, switch_at(NOISES + k, step), sensor);
+        sensor = fma(sample, window_at(NOISES + k, step), sensor);
     }
     for (var k = 0u; k < N_OUTLIERS; k++) {
-        let outlier = burst_at(OUTLIERS + k, step);
+        let outlier = intermittent_window_at(OUTLIERS + k, step);
         sensor = fma(outlier.x, outlier.y, sensor);
     }
     held_sensor = sensor;
     var too_large = 0.0;
     for (var k = 0u; k < N_SCALES; k++) {
-        too_large = too_large + switch_at(SCALES + k, step);
+        too_large = too_large + window_at(SCALES + k, step);
     }
     scale = too_large;
     var holds = 0.0;
     for (var k = 0u; k < N_SENSOR_HOLDS; k++) {
-        holds = lane_max(holds, burst_at(SENSOR_HOLDS + k, step).x);
+        holds = lane_max(holds, intermittent_window_at(SENSOR_HOLDS + k, step).x);
     }
     frozen = select(holds, 0.0, step == 0u);
     for (var k = 0u; k < N_SENSOR_RINGS; k++) {
-        ring_hold(N_COMMAND_RINGS + k, step);
+        delay_line_hold(N_COMMAND_RINGS + k, step);
     }
 }
 
 // Evaluates d1, f2 and the actuator at a moment of step number `step`, whose phases are half a step further each.
-fn signals_evaluate(step: u32, moment: u32) {
+fn exogenous_inputs_evaluate(step: u32, moment: u32) {
     let advance = moment != START;
     disturbance = held_disturbance;
     sensor_fault = held_sensor;
@@ -169,24 +169,24 @@ fn signals_evaluate(step: u32, moment: u32) {
         actuator.bias = command_bias;
     }
     for (var k = SINES; k < SINES + N_SINES; k++) {
-        let sine = wave_turned(k - SINES, advance);
+        let sine = oscillation_turned(k - SINES, advance);
         disturbance = fma(sine, waves[k - SINES].held, disturbance);
     }
     for (var k = GUSTS; k < GUSTS + N_GUSTS; k++) {
-        let shape = fma(wave_turned(k - SINES, advance), 0.5, 0.5);
+        let shape = fma(oscillation_turned(k - SINES, advance), 0.5, 0.5);
         disturbance = fma(shape, waves[k - SINES].held, disturbance);
     }
     for (var k = SENSOR_WAVES; k < SENSOR_WAVES + N_SENSOR_WAVES; k++) {
-        let sine = wave_turned(k - SINES, advance);
+        let sine = oscillation_turned(k - SINES, advance);
         sensor_fault = fma(sine, waves[k - SINES].held, sensor_fault);
     }
     for (var k = SQUARES; k < SQUARES + N_SQUARES; k++) {
-        let sine = wave_turned(k - SINES, advance);
+        let sine = oscillation_turned(k - SINES, advance);
         let shape = tanh(sine * waves[k - SINES].inverse_smoothing);
         sensor_fault = fma(shape, waves[k - SINES].held, sensor_fault);
     }
     for (var k = COMMAND_WAVES; k < COMMAND_WAVES + N_COMMAND_WAVES; k++) {
-        let sine = wave_turned(k - SINES, advance);
+        let sine = oscillation_turned(k - SINES, advance);
         actuator.bias = fma(sine, waves[k - SINES].held, actuator.bias);
     }
     if CARRIES {
@@ -201,7 +201,7 @@ fn signals_evaluate(step: u32, moment: u32) {
 // and stays so however late it arrives: delays are whole steps.
 fn carry_command(step: u32, moment: u32) {
     let sampled = HOLD_STEPS > 1u;
-    let held = sampled && (moment != START || !signals_ticks(step));
+    let held = sampled && (moment != START || !exogenous_inputs_ticks(step));
     let recalled = select(moment, START, sampled);
     // What is sent at first arrives, blocked or not: before it there is nothing.
     let first = step == 0u && moment == START;
@@ -212,8 +212,8 @@ fn carry_command(step: u32, moment: u32) {
         other = vec2(last_sent, 0.0);
     }
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
-        other = ring_recall(k, recalled, other);
-        wanted = ring_or_past(k, wanted, vec2(0.0));
+        other = delay_line_recall(k, recalled, other);
+        wanted = delay_line_or_past(k, wanted, vec2(0.0));
     }
     if N_COMMAND_HOLDS > 0u && !first {
         other.x = lane_select_le(0.5, blocked, last_arrived, other.x);
@@ -239,13 +239,13 @@ fn limit_rate(step: u32, moment: u32) {
 
 // Takes in what was wanted at the start of step number `step`: what of it was sent, and what arrived.
 fn remember_command(step: u32, wanted: f32) {
-    if signals_ticks(step) {
+    if exogenous_inputs_ticks(step) {
         last_sent = wanted;
     }
     var carried = vec2(last_sent, 0.0);
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
-        let recalled = ring_recall(k, START, carried);
-        ring_record(k, step, carried);
+        let recalled = delay_line_recall(k, START, carried);
+        delay_line_record(k, step, carried);
         carried = recalled;
     }
     let arrives = lane_select_le(0.5, blocked, last_arrived, carried.x);
@@ -256,27 +256,27 @@ fn remember_command(step: u32, wanted: f32) {
 fn measure(moment: u32, motion: vec2<f32>) -> vec2<f32> {
     var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
     for (var k = 0u; k < N_SENSOR_RINGS; k++) {
-        seen = ring_recall(N_COMMAND_RINGS + k, moment, seen);
+        seen = delay_line_recall(N_COMMAND_RINGS + k, moment, seen);
     }
     return select(seen, last_measured, frozen >= 0.5);
 }
 
 // Takes in what was wanted and what was at the start of a step.
-fn signals_remember(step: u32, wanted: f32, motion: vec2<f32>) {
+fn exogenous_inputs_remember(step: u32, wanted: f32, motion: vec2<f32>) {
     last_measured = measure(START, motion);
     last_command = actuator_command(wanted);
     remember_command(step, wanted);
     var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
     for (var k = 0u; k < N_SENSOR_RINGS; k++) {
         let ring = N_COMMAND_RINGS + k;
-        let recalled = ring_recall(ring, START, seen);
-        ring_record(ring, step, seen);
+        let recalled = delay_line_recall(ring, START, seen);
+        delay_line_record(ring, step, seen);
         seen = recalled;
     }
 }
 
 // The sine of a wave's phase, after half a step if it is to `advance`.
-fn wave_turned(k: u32, advance: bool) -> f32 {
+fn oscillation_turned(k: u32, advance: bool) -> f32 {
     if advance {
         waves[k].phase = waves[k].phase + waves[k].advance;
     }

@@ -62,7 +62,7 @@ fn agent_motion(stage: u32, at: Reference) -> vec2<f32> {
 // u_fb at the state of a stage of a step: a sampled controller holds it from one of its ticks to the next.
 fn agent_feedback(stage: u32, step: u32) -> f32 {
     if HOLD_STEPS > 1u {
-        if stage > 0u || !signals_ticks(step) {
+        if stage > 0u || !exogenous_inputs_ticks(step) {
             return own.held_feedback;
         }
     }
@@ -135,7 +135,7 @@ fn agent_distortion(stage: u32, at: Reference) -> vec2<f32> {
 // Keeps what the next step needs of the start of this one.
 fn agent_remember(response: Response, at: Reference, step: u32) {
     own.held_feedback = agent_feedback(0u, step);
-    signals_remember(step, response.wanted, agent_motion(0u, at));
+    exogenous_inputs_remember(step, response.wanted, agent_motion(0u, at));
     if N_LEAKS > 0u {
         published[command_slot(own.agent)] = last_command;
     }
@@ -164,8 +164,8 @@ fn group_begin_step(step: u32) {
 }
 
 fn group_hold(step: u32) {
-    signals_hold(step, team_commands());
-    signals_evaluate(step, START);
+    exogenous_inputs_hold(step, team_commands());
+    exogenous_inputs_evaluate(step, START);
     metrics_before_fault(own.first_fault, step);
     own.next_change = min(next_change(step), select(NEVER, own.first_fault, own.first_fault > step));
 }
@@ -209,10 +209,10 @@ fn group_advance() {
         let middle = reference_at(half + 1u);
         end = reference_at(half + 2u);
         group_stage(0u, start, step >= setting.settle_step, step);
-        signals_evaluate(step, MIDDLE);
+        exogenous_inputs_evaluate(step, MIDDLE);
         group_stage(1u, middle, false, step);
         group_stage(2u, middle, false, step);
-        signals_evaluate(step, END);
+        exogenous_inputs_evaluate(step, END);
         group_stage(3u, end, false, step);
         group_end_step(step);
         if (step + 1u) % FLUSH_STEPS == 0u {

@@ -2,7 +2,7 @@
 // burst is a switch too, and has its own words beside.
 
 // The share of switch number `k`'s value that is there at a step.
-fn switch_weight(k: u32, step: u32) -> f32 {
+fn window_weight(k: u32, step: u32) -> f32 {
     let word = SWITCHES + 4u * k;
     let onset = drawn(word);
     let risen = lane_min(f32(step - onset + 1u) * drawn_number(word + 2u), 1.0);
@@ -10,13 +10,13 @@ fn switch_weight(k: u32, step: u32) -> f32 {
     return select(begun, 0.0, drawn(word + 1u) <= step);
 }
 
-fn switch_value(k: u32) -> f32 {
+fn window_value(k: u32) -> f32 {
     return drawn_number(SWITCHES + 4u * k + 3u);
 }
 
 // What is there at a step.
-fn switch_at(k: u32, step: u32) -> f32 {
-    return switch_weight(k, step) * switch_value(k);
+fn window_at(k: u32, step: u32) -> f32 {
+    return window_weight(k, step) * window_value(k);
 }
 
 // The first step after `step` at which a switch of the channel turns on or off.
@@ -32,7 +32,7 @@ fn next_change(step: u32) -> u32 {
 }
 
 // What is there of the value of switch number `k`, a burst, and 1 or -1 by the toss of a coin for each slot.
-fn burst_at(k: u32, step: u32) -> vec2<f32> {
+fn intermittent_window_at(k: u32, step: u32) -> vec2<f32> {
     let burst = k - INTERMITTENTS;
     // Before the onset the weight is zero, whatever the slot.
     let since = step - drawn(SWITCHES + 4u * k);
@@ -44,5 +44,5 @@ fn burst_at(k: u32, step: u32) -> vec2<f32> {
     let words = address_words(address, setting.seed);
     let hit = select(0.0, 1.0, words.x <= drawn(BURSTS + 2u * burst + 1u));
     let sign = select(1.0, -1.0, (words.y & 1u) == 1u);
-    return vec2(hit * switch_at(k, step), sign);
+    return vec2(hit * window_at(k, step), sign);
 }

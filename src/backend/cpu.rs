@@ -1,6 +1,6 @@
 //! The CPU backend: blocks of episodes over all cores, each block in the widest lanes that the processor has.
 
-use super::Flown;
+use super::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
 use crate::model::episode::{AgentOutcome, Controller, Model, Snapshot};
@@ -111,7 +111,7 @@ impl Cpu {
 
     /// Flies a range of episodes under every controller, in order; `done` is told of each finished block's episodes.
     #[must_use]
-    pub fn fly(&self, episodes: Range<u32>, done: &(dyn Fn(u32) + Sync)) -> Vec<Flown> {
+    pub fn fly(&self, episodes: Range<u32>, done: &(dyn Fn(u32) + Sync)) -> Vec<EpisodeResult> {
         match &self.0 {
             Loop::F64(flyer) => flyer.fly::<f64>(episodes, done),
             Loop::F32(flyer, simd) => match simd {
@@ -167,7 +167,7 @@ impl<R: Real> Flyer<R> {
         &self,
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
-    ) -> Vec<Flown> {
+    ) -> Vec<EpisodeResult> {
         let blocks: Vec<Range<u32>> = blocks(episodes);
         blocks
             .into_par_iter()
@@ -175,9 +175,9 @@ impl<R: Real> Flyer<R> {
                 let count = block.end - block.start;
                 let episodes: Vec<Episode> =
                     block.map(|episode| draw(&self.campaign, episode)).collect();
-                let mut flown: Vec<Flown> = episodes
+                let mut flown: Vec<EpisodeResult> = episodes
                     .iter()
-                    .map(|episode| Flown {
+                    .map(|episode| EpisodeResult {
                         episode: episode.clone(),
                         outcomes: Vec::new(),
                     })

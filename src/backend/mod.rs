@@ -8,7 +8,7 @@ use crate::model::episode::AgentOutcome;
 
 /// One episode: its draw and, `[controller][agent]`, how it went.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flown {
+pub struct EpisodeResult {
     /// What was drawn.
     pub episode: Episode,
     /// How it went.

@@ -1,6 +1,6 @@
 //! Checks of single values and of the shapes that all tables share.
 
-use super::Drawn;
+use super::RandomQuantity;
 use super::distribution::Distribution;
 use super::error::{CampaignError, line_of};
 use super::file::*;
@@ -49,7 +49,7 @@ pub struct Parameter {
     pub(super) default: Option<f64>,
     pub(super) bounds: Bounds,
     /// Who shares a draw, if the file does not say it: each channel has its own, or the agent one.
-    pub(super) per: Per,
+    pub(super) per: SamplingScope,
 }
 
 /// A parameter of each channel that has to be given.
@@ -58,7 +58,7 @@ pub(super) const fn required(name: &'static str, bounds: Bounds) -> Parameter {
         name,
         default: None,
         bounds,
-        per: Per::Channel,
+        per: SamplingScope::Channel,
     }
 }
 
@@ -68,7 +68,7 @@ pub(super) const fn of_agent(name: &'static str, bounds: Bounds) -> Parameter {
         name,
         default: None,
         bounds,
-        per: Per::Agent,
+        per: SamplingScope::Agent,
     }
 }
 
@@ -174,7 +174,7 @@ impl Check<'_> {
         blocks: Option<&[B]>,
         parameters: &'static [Parameter],
         team: usize,
-    ) -> Result<Vec<Drawn>, CampaignError> {
+    ) -> Result<Vec<RandomQuantity>, CampaignError> {
         let foreign = |name: &str| parameters.iter().all(|parameter| parameter.name != name);
         let in_base = T::NAMES.iter().copied().find_map(|name| {
             let value = base.parameter(name).filter(|_| foreign(name))?;
@@ -211,7 +211,7 @@ impl Check<'_> {
         blocks: Option<&[B]>,
         parameter: Parameter,
         team: usize,
-    ) -> Result<Drawn, CampaignError> {
+    ) -> Result<RandomQuantity, CampaignError> {
         let written = Written {
             base: base.and_then(|base| base.parameter(parameter.name)),
             own: &|agent| blocks.and_then(|blocks| blocks[agent].parameter(parameter.name)),
@@ -227,16 +227,16 @@ impl Check<'_> {
         parameter: Parameter,
         team: usize,
         channels: usize,
-    ) -> Result<Drawn, CampaignError> {
-        let mut drawn = Drawn {
-            per: Per::Channel,
+    ) -> Result<RandomQuantity, CampaignError> {
+        let mut drawn = RandomQuantity {
+            per: SamplingScope::Channel,
             channels,
             distributions: Vec::new(),
         };
         let mut per = None;
         for agent in 0..team {
             let (key, value) = written.of(table, parameter.name, agent);
-            if parameter.per != Per::Channel {
+            if parameter.per != SamplingScope::Channel {
                 self.is_of_agent(&key, value)?;
             }
             for channel in 0..channels {
@@ -261,7 +261,7 @@ impl Check<'_> {
                 format!("a list of {}", list.len()),
                 "give one number or distribution",
             ),
-            Some(Value::Distribution(file)) if file.per == Some(Per::Channel) => (
+            Some(Value::Distribution(file)) if file.per == Some(SamplingScope::Channel) => (
                 format!("{key}.per"),
                 "\"channel\"".to_string(),
                 "use \"episode\" or \"agent\"",
@@ -278,10 +278,10 @@ impl Check<'_> {
         key: &str,
         value: Option<&Value>,
         default: Option<f64>,
-        default_per: Per,
+        default_per: SamplingScope,
         bounds: Bounds,
         team: usize,
-    ) -> Result<Drawn, CampaignError> {
+    ) -> Result<RandomQuantity, CampaignError> {
         self.is_of_agent(key, value)?;
         let parameter = Parameter {
             name: "",
@@ -290,7 +290,7 @@ impl Check<'_> {
             per: default_per,
         };
         let (distribution, per) = self.channel_value(key, value, parameter, 0)?;
-        Ok(Drawn {
+        Ok(RandomQuantity {
             per: per.unwrap_or(default_per),
             channels: 1,
             distributions: vec![distribution; team],
@@ -303,7 +303,7 @@ impl Check<'_> {
         value: Option<&Value>,
         parameter: Parameter,
         channel: usize,
-    ) -> Result<(Distribution, Option<Per>), CampaignError> {
+    ) -> Result<(Distribution, Option<SamplingScope>), CampaignError> {
         let (key, value) = match (value, parameter.default) {
             (None, Some(default)) => return Ok((Distribution::Constant(default), None)),
             (None, None) => {
@@ -335,8 +335,8 @@ impl Check<'_> {
     fn same_per(
         &self,
         key: &str,
-        all: &mut Option<Option<Per>>,
-        own: Option<Per>,
+        all: &mut Option<Option<SamplingScope>>,
+        own: Option<SamplingScope>,
     ) -> Result<(), CampaignError> {
         match *all {
             None => *all = Some(own),
@@ -428,7 +428,7 @@ impl Check<'_> {
         &self,
         key: &str,
         value: &Value,
-    ) -> Result<(Distribution, Option<Per>), CampaignError> {
+    ) -> Result<(Distribution, Option<SamplingScope>), CampaignError> {
         match value {
             Value::Number(number) => self
                 .number(key, *number, Bounds::Any)

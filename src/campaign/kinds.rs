@@ -1,14 +1,14 @@
 //! The parameters of every kind of disturbance and fault, by name: one list serves validation, draws and tables.
 
 use super::check::{Bounds, Parameter, of_agent, required};
-use super::file::{DisturbanceKind, FaultKind, FaultTarget, Per};
+use super::file::{DisturbanceKind, FaultKind, FaultTarget, SamplingScope};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 
 const PHASE: Parameter = Parameter {
     name: "phase_rad",
     default: Some(0.0),
     bounds: Bounds::Any,
-    per: Per::Channel,
+    per: SamplingScope::Channel,
 };
 
 /// Sizes of a jet in m: below a millimetre, squares of far distances would leave the singles.
@@ -87,7 +87,7 @@ impl DisturbanceKind {
                         name: "scale",
                         default: Some(1.0),
                         bounds: Bounds::Any,
-                        per: Per::Channel,
+                        per: SamplingScope::Channel,
                     }]
                 }
             }

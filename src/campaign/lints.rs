@@ -1,6 +1,6 @@
 //! What a campaign may do, but its writer has probably not meant: said before the flight, forbidden by nothing.
 
-use super::{ALL, Campaign, Distribution, Drawn, Fault, Requirement};
+use super::{ALL, Campaign, Distribution, Fault, RandomQuantity, Requirement};
 use crate::reference::{AgentWalk, Reference, WaypointPath};
 use crate::statistics::LEVEL;
 use crate::statistics::{runs_needed, sequential_runs_needed};
@@ -119,7 +119,7 @@ fn absent(index: usize, fault: &Fault) -> Option<String> {
 
 /// A fault that is never there as a whole, as it ends before it has come.
 fn unfinished(index: usize, fault: &Fault) -> Option<String> {
-    let ends = |drawn: &Drawn| {
+    let ends = |drawn: &RandomQuantity| {
         let supports = drawn.distributions.iter().map(Distribution::support);
         supports.fold([f64::INFINITY, 0.0], |[low, high], own| {
             [f64::min(low, own.0), f64::max(high, own.1)]

@@ -14,7 +14,7 @@ pub use distribution::Distribution;
 pub use error::CampaignError;
 pub use file::{
     CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind, Link,
-    ObserverStart, Per,
+    ObserverStart, SamplingScope,
 };
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 
@@ -58,11 +58,11 @@ pub struct Campaign {
     /// Where the gains come from.
     pub synthesis: GainSource,
     /// True mass over modelled mass, per agent.
-    pub mass_scale: Drawn,
+    pub mass_scale: RandomQuantity,
     /// True inertia over modelled inertia, per agent.
-    pub inertia_scale: Drawn,
+    pub inertia_scale: RandomQuantity,
     /// Coupling strength, per agent.
-    pub kappa: Drawn,
+    pub kappa: RandomQuantity,
     /// From where the coupling counts x.
     pub coordinates: CouplingCoordinates,
     /// What is between measurement and command, beside the controller.
@@ -273,16 +273,16 @@ impl Time {
 
 /// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct RandomQuantity {
     /// Who shares a draw.
-    pub per: Per,
+    pub per: SamplingScope,
     /// Channels per agent (1 for a quantity of the agent).
     pub channels: usize,
     /// Distribution of each agent and channel, agent by agent.
     pub distributions: Vec<Distribution>,
 }
 
-impl Drawn {
+impl RandomQuantity {
     /// The distribution of an agent's channel.
     #[must_use]
     pub fn of(&self, agent: usize, channel: usize) -> &Distribution {
@@ -302,7 +302,7 @@ pub struct Control {
     /// What the first output integrates.
     pub integral: IntegralKind,
     /// Time that a command takes to the actuator, s; per agent.
-    pub delay_s: Option<Drawn>,
+    pub delay_s: Option<RandomQuantity>,
     /// Steps for which a command is held; 1 for a controller that never rests.
     pub hold_steps: u32,
 }
@@ -311,11 +311,11 @@ pub struct Control {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
     /// x - r, m or rad.
-    pub error: Drawn,
+    pub error: RandomQuantity,
     /// x' - r', m/s or rad/s.
-    pub error_rate: Drawn,
+    pub error_rate: RandomQuantity,
     /// Integral of x - r, m s or rad s.
-    pub error_integral: Drawn,
+    pub error_integral: RandomQuantity,
     /// What the observers start from.
     pub observer: ObserverStart,
 }
@@ -326,7 +326,7 @@ pub struct Disturbance {
     /// Form.
     pub kind: DisturbanceKind,
     /// Its parameters, in the order of [`DisturbanceKind::parameters`].
-    pub parameters: Vec<Drawn>,
+    pub parameters: Vec<RandomQuantity>,
 }
 
 /// A fault of an actuator, a sensor, the network or the plant.
@@ -347,13 +347,13 @@ pub struct Fault {
     /// Where; per agent.
     pub channels: Vec<FaultChannels>,
     /// When, s; one value per agent.
-    pub onset_s: Drawn,
+    pub onset_s: RandomQuantity,
     /// How long, s; one value per agent. None: to the end.
-    pub duration_s: Option<Drawn>,
+    pub duration_s: Option<RandomQuantity>,
     /// The time in which it comes, s; one value per agent. None: at once.
-    pub ramp_s: Option<Drawn>,
+    pub ramp_s: Option<RandomQuantity>,
     /// Its parameters, in the order of [`FaultKind::parameters`].
-    pub parameters: Vec<Drawn>,
+    pub parameters: Vec<RandomQuantity>,
 }
 
 impl Fault {

@@ -143,7 +143,7 @@ pub(crate) struct RunArguments {
         verbatim_doc_comment
     )]
     pub(crate) precision: PrecisionChoice,
-    /// Layout of the CPU's episodes in f32; avx2 and avx512 give the same
+    /// Words of the CPU's episodes in f32; avx2 and avx512 give the same
     /// result
     #[arg(
         long,

@@ -8,7 +8,7 @@ use urts_mc::report::paper::PaperError;
 use urts_mc::run::RunError;
 use urts_mc::run::error::OutputError;
 use urts_mc::run::replay::ReplayError;
-use urts_mc::simulation::FlightError;
+use urts_mc::simulation::SimulationError;
 
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +115,7 @@ fn code_of(error: &anyhow::Error) -> Code {
     }
     match error.downcast_ref() {
         Some(RunError::Gains(error)) => return of_gains(error),
-        Some(RunError::Flight(error)) => return of_flight(error),
+        Some(RunError::Simulation(error)) => return of_flight(error),
         _ => {}
     }
     match error.downcast_ref() {
@@ -159,13 +159,13 @@ fn output_of(error: &anyhow::Error) -> Option<&OutputError> {
     error.downcast_ref()
 }
 
-fn of_flight(error: &FlightError) -> Code {
+fn of_flight(error: &SimulationError) -> Code {
     match error {
-        FlightError::Threads { .. } => Code::Usage,
-        FlightError::NoGpu(GpuError::NoHardware { .. } | GpuError::NoSuchAdapter { .. }) => {
+        SimulationError::Threads { .. } => Code::Usage,
+        SimulationError::NoGpu(GpuError::NoHardware { .. } | GpuError::NoSuchAdapter { .. }) => {
             Code::Usage
         }
-        FlightError::NoGpu(_) => Code::Other,
-        FlightError::Gpu(_) => Code::Other,
+        SimulationError::NoGpu(_) => Code::Other,
+        SimulationError::Gpu(_) => Code::Other,
     }
 }

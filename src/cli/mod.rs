@@ -17,7 +17,7 @@ use arguments::{
 use completions::completions;
 use console::{print, print_json, print_note};
 use exit::{Code, Failure};
-use progress::Shown;
+use progress::ProgressLine;
 use std::collections::BTreeMap;
 use std::path::Path;
 use urts_mc::backend::cpu::{Precision, Simd};
@@ -33,7 +33,7 @@ use urts_mc::run::directory::{OutputDir, OutputFile};
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
 use urts_mc::run::{Extras, Findings, run};
-use urts_mc::simulation::{Backend, Settings};
+use urts_mc::simulation::{Backend, RunOptions};
 use urts_mc::synthesis::{Preset, synthesize};
 
 /// Carries out a command.
@@ -137,7 +137,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
 impl RunArguments {
     /// Flies a campaign into a directory.
     fn fly(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
-        let settings = self.settings()?;
+        let options = self.options()?;
         let out = OutputDir::claim(out, campaign, self.overwrite)?;
         let extras = Extras {
             csv: self.csv,
@@ -146,16 +146,16 @@ impl RunArguments {
         if !self.quiet {
             cautions(campaign).iter().for_each(|said| print_note(said));
         }
-        let shown = Shown::of_run(campaign, self.quiet);
-        let findings = run(campaign, &settings, &out, extras, &|at| {
+        let shown = ProgressLine::of_run(campaign, self.quiet);
+        let findings = run(campaign, &options, &out, extras, &|at| {
             shown.tell(at);
         })?;
         report(out.path())?;
         Ok(findings)
     }
 
-    /// The settings; options that contradict each other are refused.
-    fn settings(&self) -> Result<Settings, Failure> {
+    /// The options; options that contradict each other are refused.
+    fn options(&self) -> Result<RunOptions, Failure> {
         let precision = match self.precision {
             PrecisionChoice::F32 => Precision::F32,
             PrecisionChoice::F64 => Precision::F64,
@@ -204,7 +204,7 @@ impl RunArguments {
                 "--cross-check: compares with f64, which this run is; leave it out".into(),
             ));
         }
-        Ok(Settings {
+        Ok(RunOptions {
             backend,
             precision,
             simd,
@@ -241,8 +241,8 @@ fn devices_command(arguments: &DevicesArguments) -> Result<Code, Failure> {
 
 fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     let campaign = arguments.overrides.load()?;
-    let shown = Shown::of_work("synthesizing gains", arguments.quiet);
-    let gains = GainSet::obtain(&campaign);
+    let shown = ProgressLine::of_work("synthesizing gains", arguments.quiet);
+    let gains = GainSet::synthesize_or_load(&campaign);
     drop(shown);
     let gains = gains?;
     if arguments.json {
@@ -258,8 +258,8 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
         return synthesize_preset(arguments);
     };
     let campaign = Campaign::load(path)?;
-    let shown = Shown::of_work("synthesizing gains", false);
-    let gains = GainSet::obtain(&campaign);
+    let shown = ProgressLine::of_work("synthesizing gains", false);
+    let gains = GainSet::synthesize_or_load(&campaign);
     drop(shown);
     let gains = gains?;
     if arguments.json {
@@ -274,7 +274,7 @@ fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
     let preset = Preset::ALL
         .into_iter()
         .find(|known| Some(known.name()) == arguments.preset.as_deref());
-    let shown = Shown::of_work("synthesizing gains", false);
+    let shown = ProgressLine::of_work("synthesizing gains", false);
     let mut done = Vec::new();
     for (role, design) in preset.map(Preset::designs).unwrap_or_default() {
         let synthesis =
@@ -311,7 +311,7 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
     if out.is_some() {
         files.may_be_written(*overwrite)?;
     }
-    let shown = Shown::of_work("flying the episode again", *quiet);
+    let shown = ProgressLine::of_work("flying the episode again", *quiet);
     let replayed = replay(run, *episode, controller, *interval);
     drop(shown);
     let replayed = replayed?;

@@ -9,13 +9,13 @@ use urts_mc::run::Progress;
 
 /// A line on standard error that says what goes on, with rate and time left of a flight. It is shown on a terminal only, and taken
 /// away at the end.
-pub(super) struct Shown {
+pub(super) struct ProgressLine {
     bar: ProgressBar,
     /// Whether the flight may end before its last episode.
     may_stop: bool,
 }
 
-impl Shown {
+impl ProgressLine {
     /// A run, which begins with its gains.
     pub(super) fn of_run(campaign: &Campaign, quiet: bool) -> Self {
         Self {
@@ -38,11 +38,11 @@ impl Shown {
     pub(super) fn tell(&self, at: Progress) {
         match at {
             Progress::Gains => self.bar.set_message("synthesizing gains"),
-            Progress::Flight => {
+            Progress::Simulation => {
                 self.bar.reset();
                 self.bar.set_style(of_flight(self.may_stop));
             }
-            Progress::Flown(episodes) => self.bar.inc(u64::from(episodes)),
+            Progress::Simulated(episodes) => self.bar.inc(u64::from(episodes)),
             Progress::CrossCheck => self.work("comparing with f64 on the CPU"),
             Progress::Statistics => self.work("intervals, tests and rankings"),
             Progress::Writing => self.work("writing tables"),
@@ -56,7 +56,7 @@ impl Shown {
     }
 }
 
-impl Drop for Shown {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -1,6 +1,6 @@
 //! gains.json: what a run writes, and what a campaign may fly instead of a synthesis.
 
-use super::{ChannelController, Findings, FlyingController, GainSet, GainsError, integrable};
+use super::{ChannelController, Findings, GainSet, GainsError, SimulatedController, integrable};
 use crate::agent::ChannelGroup;
 use crate::agent::ChannelRole;
 use crate::campaign::Campaign;
@@ -103,7 +103,7 @@ pub(super) fn controller(
     path: &Path,
     controller: &str,
     check: bool,
-) -> Result<FlyingController, GainsError> {
+) -> Result<SimulatedController, GainsError> {
     let broken = |reason: String| GainsError::File {
         path: path.to_path_buf(),
         reason,
@@ -176,7 +176,7 @@ pub(super) fn controller(
         )));
     }
     let source = format!("{} ({controller})", path.display());
-    Ok(FlyingController {
+    Ok(SimulatedController {
         name: name.to_string(),
         source,
         groups,

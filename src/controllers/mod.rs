@@ -6,7 +6,7 @@ pub use file::{ControllerFile, GainsFile};
 
 use crate::agent::ActuationKind;
 use crate::agent::{Agent, ChannelGroup};
-use crate::campaign::{Campaign, CampaignError, Drawn, FTC, PID, PID_TUNED};
+use crate::campaign::{Campaign, CampaignError, FTC, PID, PID_TUNED, RandomQuantity};
 use crate::synthesis::{
     Certificate, ChannelDesign, ChannelSynthesis, Check, ControllerGains, LoopAnalysis, LoopGains,
     SolverReport, SynthesisError, loop_gains, poles, synthesize,
@@ -66,12 +66,12 @@ impl GainsError {
 #[derive(Debug, Clone)]
 pub struct GainSet {
     /// The controllers.
-    pub controllers: Vec<FlyingController>,
+    pub controllers: Vec<SimulatedController>,
 }
 
 /// A controller ready to fly.
 #[derive(Debug, Clone)]
-pub struct FlyingController {
+pub struct SimulatedController {
     /// Its name in the campaign.
     pub name: String,
     /// Whose gains they are: "synthesized", or a file and the name there.
@@ -80,7 +80,7 @@ pub struct FlyingController {
     pub groups: Vec<ChannelController>,
 }
 
-impl FlyingController {
+impl SimulatedController {
     /// Whether its gains have a certificate: whether it estimates the faults.
     #[must_use]
     pub fn is_certified(&self) -> bool {
@@ -128,7 +128,7 @@ impl GainSet {
     ///
     /// # Errors
     /// If a synthesis fails, a file is unreadable or refused, or the step is too long for the gains.
-    pub fn obtain(campaign: &Campaign) -> Result<Self, GainsError> {
+    pub fn synthesize_or_load(campaign: &Campaign) -> Result<Self, GainsError> {
         let source = &campaign.synthesis;
         let built_in = |name: &String| [FTC, PID, PID_TUNED].contains(&name.as_str());
         let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(built_in) {
@@ -179,7 +179,7 @@ impl GainSet {
     /// The gains as the episode loop takes them, `[controller][channel group]`.
     #[must_use]
     pub fn loops(&self) -> Vec<Vec<LoopGains>> {
-        let of_groups = |controller: &FlyingController| {
+        let of_groups = |controller: &SimulatedController| {
             let groups = controller.groups.iter();
             groups.map(|group| group.loop_gains).collect()
         };
@@ -230,7 +230,7 @@ fn plant_poles(campaign: &Campaign) -> Vec<(f64, &'static str)> {
     let Agent::Uav(uav) = &campaign.agent else {
         return Vec::new();
     };
-    let least = |scale: &Drawn| {
+    let least = |scale: &RandomQuantity| {
         let lows = scale
             .distributions
             .iter()
@@ -331,7 +331,7 @@ fn from_synthesis(
     campaign: &Campaign,
     name: &str,
     synthesized: &[ChannelSynthesis],
-) -> Result<FlyingController, GainsError> {
+) -> Result<SimulatedController, GainsError> {
     let of_group = |(group, synthesis): (ChannelGroup, &ChannelSynthesis)| {
         let (gains, findings) = built_in(synthesis, name);
         let loop_gains =
@@ -347,7 +347,7 @@ fn from_synthesis(
         })
     };
     let groups = campaign.channel_groups().into_iter().zip(synthesized);
-    Ok(FlyingController {
+    Ok(SimulatedController {
         name: name.to_string(),
         source: "synthesized".into(),
         groups: groups.map(of_group).collect::<Result<_, _>>()?,

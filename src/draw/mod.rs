@@ -4,7 +4,7 @@
 pub mod quantities;
 
 use crate::campaign::{
-    Campaign, Drawn, FaultChannels, Per, Sampling, Stratum, StratumFaults, Time,
+    Campaign, FaultChannels, RandomQuantity, Sampling, SamplingScope, Stratum, StratumFaults, Time,
 };
 use crate::random::philox::{Address, Stream};
 use crate::random::{MOST_ENTRIES, latin_hypercube, sobol};
@@ -135,7 +135,7 @@ struct Draws<'a> {
 
 impl Draws<'_> {
     fn agent(&self, campaign: &Campaign, agent: usize) -> AgentDraw {
-        let initial = |quantity: Quantity, drawn: &Drawn| {
+        let initial = |quantity: Quantity, drawn: &RandomQuantity| {
             self.values(Stream::Initial, quantity as u32, 0, drawn, agent)
         };
         AgentDraw {
@@ -169,7 +169,7 @@ impl Draws<'_> {
     }
 
     fn fault(&self, fault: &crate::campaign::Fault, entry: u32, agent: usize) -> FaultDraw {
-        let unit = |index| self.unit(Stream::Fault, entry, index, Per::Agent, agent, 0);
+        let unit = |index| self.unit(Stream::Fault, entry, index, SamplingScope::Agent, agent, 0);
         let occurs = match self.stratum.map(|stratum| &stratum.faults) {
             Some(StratumFaults::Certain(faults)) if !fault.background => {
                 faults.contains(&(entry as usize)) && fault.probability[agent] > 0.0
@@ -187,7 +187,7 @@ impl Draws<'_> {
             FaultChannels::One => channel == one,
             FaultChannels::These(channels) => channels.contains(&channel),
         };
-        let of_agent = |index: u32, drawn: Option<&Drawn>, absent: f64| {
+        let of_agent = |index: u32, drawn: Option<&RandomQuantity>, absent: f64| {
             drawn.map_or(absent, |drawn| {
                 self.values(Stream::Fault, entry, index, drawn, agent)[0]
             })
@@ -214,7 +214,7 @@ impl Draws<'_> {
         stream: Stream,
         entry: u32,
         first: u32,
-        drawn: &[Drawn],
+        drawn: &[RandomQuantity],
         agent: usize,
     ) -> Vec<Vec<f64>> {
         (first..)
@@ -228,7 +228,7 @@ impl Draws<'_> {
         stream: Stream,
         entry: u32,
         index: u32,
-        drawn: &Drawn,
+        drawn: &RandomQuantity,
         agent: usize,
     ) -> Vec<f64> {
         (0..drawn.channels)
@@ -246,14 +246,14 @@ impl Draws<'_> {
         stream: Stream,
         entry: u32,
         index: u32,
-        per: Per,
+        per: SamplingScope,
         agent: usize,
         channel: usize,
     ) -> f64 {
         let member = match per {
-            Per::Episode => 0,
-            Per::Agent => member(agent, 0),
-            Per::Channel => member(agent, channel),
+            SamplingScope::Episode => 0,
+            SamplingScope::Agent => member(agent, 0),
+            SamplingScope::Channel => member(agent, channel),
         };
         let address = Address {
             episode: self.episode,

@@ -8,11 +8,11 @@ use crate::agent::Agent;
 use crate::campaign::Campaign;
 
 /// A quantity and its size in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
-pub type Condition = (String, Option<f64>);
+pub type DrawnQuantity = (String, Option<f64>);
 
 /// The conditions of an episode, the same quantities in the same order for all episodes of a campaign.
 #[must_use]
-pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<Condition> {
+pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> {
     let agents = &episode.agents;
     let of_agents = |pick: &dyn Fn(&AgentDraw) -> f64| size(agents.iter().map(pick));
     let of_channels = |pick: &dyn Fn(&AgentDraw) -> &Vec<f64>| {

@@ -8,8 +8,8 @@
 use super::controller::{ChannelGains, fault_estimates, feedback};
 use super::exogenous::delay_line::Moment;
 use super::exogenous::vortex::Vortex;
-use super::exogenous::{Signals, kernels};
-use super::inputs::Condition;
+use super::exogenous::{ExogenousInputs, kernels};
+use super::inputs::ChannelInputs;
 use super::integrator::Stepped;
 use super::lanes::Lane;
 use super::metric::{Limits, Metrics, Sample};
@@ -18,7 +18,7 @@ use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::campaign::{Campaign, CouplingCoordinates};
 
 /// Constants of a group: plant, gains and limits of its channels.
-pub(crate) struct Setting<'t, P, R, const NC: usize> {
+pub(crate) struct GroupParameters<'t, P, R, const NC: usize> {
     pub(crate) plant: P,
     pub(crate) gains: [ChannelGains<R>; NC],
     pub(crate) limits: [Limits<R>; NC],
@@ -68,7 +68,7 @@ pub(crate) struct Team<'a, L, const NC: usize> {
 pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) channels: [Stepped<L, NS>; NC],
     pub(crate) extra: Stepped<L, NX>,
-    pub(crate) signals: Signals<L, NC>,
+    pub(crate) signals: ExogenousInputs<L, NC>,
     pub(crate) kappa: L,
     pub(crate) vortices: Vec<Vortex<L>>,
     /// u_fb as it is held by a sampled controller.
@@ -81,7 +81,7 @@ pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usi
 
 impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS, NX> {
     /// An agent at step 0, from its channels' states and what it meets.
-    pub(crate) fn new(channels: [[L; NS]; NC], condition: Condition<L, NC>) -> Self {
+    pub(crate) fn new(channels: [[L; NS]; NC], condition: ChannelInputs<L, NC>) -> Self {
         Self {
             channels: channels.map(Stepped::new),
             extra: Stepped::new([L::number(0.0); NX]),
@@ -115,7 +115,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     #[inline(always)]
     pub(crate) fn feedback<P, const STAGE: usize>(
         &self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         step: u32,
     ) -> [L; NC] {
         if self.signals.hold_steps > 1 && (STAGE > 0 || !self.signals.ticks(step)) {
@@ -133,7 +133,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     #[inline(always)]
     pub(crate) fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         team: &Team<'_, L, NC>,
         own: usize,
@@ -199,7 +199,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     #[inline(always)]
     pub(crate) fn remember<P: Plant<L, NC, NX>>(
         &mut self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         response: &Response<L, NC, NX>,
         step: u32,

@@ -5,17 +5,17 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::agent::{Agent, Coupling, Setting};
+use super::agent::{Agent, Coupling, GroupParameters};
 use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES, TRUE_STATES};
-use super::inputs::{Block, Condition, Entries, changes};
+use super::inputs::{ChannelInputs, LaneBlock, Selection, changes};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::plant::Plant;
-use super::plant::biped::Leg;
+use super::plant::biped::LegPlant;
 use super::plant::uav::{Attitude, Axis, Thrust, Translation};
 use super::subsystem::parts;
-pub(crate) use super::subsystem::{Part, PlantKind};
-use super::team::{Advance, Ending, Group, Internals, Show, Shown};
+pub(crate) use super::subsystem::{PlantKind, Subsystem};
+use super::team::{Advance, ChannelSample, Ending, ObserverState, Show, TeamState};
 use crate::agent::robot::LEG_JOINTS;
 use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
@@ -24,7 +24,7 @@ use crate::synthesis::LoopGains;
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
     pub(crate) campaign: Campaign,
-    pub(crate) parts: Vec<Part<R>>,
+    pub(crate) parts: Vec<Subsystem<R>>,
 }
 
 /// A controller in the precision of the loop: its gains on each channel group.
@@ -62,9 +62,9 @@ pub struct Snapshot {
     /// Step number; the time is this times the step.
     pub step: u32,
     /// `[agent][channel]`.
-    pub agents: Vec<Vec<Shown>>,
+    pub agents: Vec<Vec<ChannelSample>>,
     /// What the loops hold, `[agent][channel]`; empty where a GPU flew, which does not send it back.
-    pub internals: Vec<Vec<Internals>>,
+    pub internals: Vec<Vec<ObserverState>>,
 }
 
 impl AgentOutcome {
@@ -99,9 +99,11 @@ impl<R: Real> Controller<R> {
             },
         }
     }
+}
 
+impl Controller<f64> {
     /// A controller that measures without error: u_fb = K [int e, e, e']' with the K of each channel group. It shows the
-    /// plant apart from any observer, on the CPU; no campaign names it.
+    /// plant apart from any observer, in double precision; no campaign names it.
     #[must_use]
     pub fn true_state(groups: &[[f64; 3]]) -> Self {
         Self {
@@ -157,10 +159,10 @@ impl<R: Real> Model<R> {
         every: Option<u32>,
     ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
         let blank = AgentOutcome::blank(self.campaign.channels().len());
-        let mut flight = Flight {
+        let mut flight = EpisodeLoop {
             model: self,
             controller,
-            block: Block {
+            block: LaneBlock {
                 campaign: &self.campaign,
                 episodes,
             },
@@ -172,7 +174,12 @@ impl<R: Real> Model<R> {
             match controller.kind {
                 ControllerKind::Ftc => flight.part::<L, FTC_STATES>(part),
                 ControllerKind::Pid => flight.part::<L, PID_STATES>(part),
-                ControllerKind::TrueState => flight.part::<L, TRUE_STATES>(part),
+                // Only a reference's controller can be of this kind, so no other precision compiles the loop for it.
+                ControllerKind::TrueState => {
+                    if R::IS_REFERENCE {
+                        flight.part::<L, TRUE_STATES>(part);
+                    }
+                }
             }
         }
         (flight.outcomes, flight.snapshots)
@@ -180,18 +187,18 @@ impl<R: Real> Model<R> {
 }
 
 /// A block of episodes under one controller.
-struct Flight<'a, R> {
+struct EpisodeLoop<'a, R> {
     model: &'a Model<R>,
     controller: &'a Controller<R>,
-    block: Block<'a>,
+    block: LaneBlock<'a>,
     /// Steps between two snapshots, if any are taken.
     every: Option<u32>,
     outcomes: Vec<Vec<AgentOutcome>>,
     snapshots: Vec<Snapshot>,
 }
 
-impl<R: Real> Flight<'_, R> {
-    fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Part<R>) {
+impl<R: Real> EpisodeLoop<'_, R> {
+    fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Subsystem<R>) {
         let (campaign, first) = (&self.model.campaign, part.channels.start);
         match &campaign.agent {
             crate::agent::Agent::Uav(uav) => match part.plant {
@@ -205,9 +212,9 @@ impl<R: Real> Flight<'_, R> {
             crate::agent::Agent::Biped(biped) => {
                 let (robot, side) = (&biped.robot, first / LEG_JOINTS);
                 if campaign.is_limited() {
-                    self.group::<L, _, 6, NS, 0>(Leg::<R, true>::new(robot, side), part);
+                    self.group::<L, _, 6, NS, 0>(LegPlant::<R, true>::new(robot, side), part);
                 } else {
-                    self.group::<L, _, 6, NS, 0>(Leg::<R, false>::new(robot, side), part);
+                    self.group::<L, _, 6, NS, 0>(LegPlant::<R, false>::new(robot, side), part);
                 }
             }
         }
@@ -216,7 +223,7 @@ impl<R: Real> Flight<'_, R> {
     fn group<L, P, const NC: usize, const NS: usize, const NX: usize>(
         &mut self,
         plant: P,
-        part: &Part<R>,
+        part: &Subsystem<R>,
     ) where
         L: Lane<Real = R>,
         P: Plant<L, NC, NX>,
@@ -224,7 +231,7 @@ impl<R: Real> Flight<'_, R> {
         let campaign = &self.model.campaign;
         let first = part.channels.start;
         let verdict = &campaign.verdict;
-        let setting = Setting {
+        let setting = GroupParameters {
             plant,
             gains: std::array::from_fn(|c| self.controller.gains[campaign.group_of(first + c)]),
             limits: std::array::from_fn(|c| {
@@ -252,7 +259,7 @@ impl<R: Real> Flight<'_, R> {
                     .flat_map(move |episode| changes(campaign, &episode.agents[agent]))
             })
             .collect();
-        let mut group: Group<L, NC, NS, NX> = Group::new(agents, numbers, changes);
+        let mut group: TeamState<L, NC, NS, NX> = TeamState::new(agents, numbers, changes);
 
         let (steps, mut step, mut snapshot) = (campaign.time.steps, 0, 0);
         loop {
@@ -282,7 +289,7 @@ impl<R: Real> Flight<'_, R> {
     /// The initial state of an agent and what will act on it.
     fn agent<L, P, const NC: usize, const NS: usize, const NX: usize>(
         &self,
-        setting: &Setting<'_, P, R, NC>,
+        setting: &GroupParameters<'_, P, R, NC>,
         agent: usize,
         first: usize,
     ) -> Agent<L, NC, NS, NX>
@@ -291,7 +298,7 @@ impl<R: Real> Flight<'_, R> {
         P: Plant<L, NC, NX>,
     {
         let campaign = &self.model.campaign;
-        let condition: Condition<L, NC> = self.block.condition(agent, first, Entries::Acting);
+        let condition: ChannelInputs<L, NC> = self.block.condition(agent, first, Selection::Acting);
         let at_rest = [L::number(0.0); NX];
         let rows = &setting.table[agent * NC * P::ROWS..][..NC * P::ROWS];
         let reference = setting.plant.reference(rows, &at_rest);
@@ -323,14 +330,14 @@ impl<R: Real> Flight<'_, R> {
         snapshot: usize,
         step: u32,
         first: usize,
-        shown: &[[(Shown, Internals); NC]],
+        shown: &[[(ChannelSample, ObserverState); NC]],
     ) {
         if snapshot == self.snapshots.len() {
             let channels = self.model.campaign.channels().len();
             self.snapshots.push(Snapshot {
                 step,
-                agents: vec![vec![Shown::default(); channels]; shown.len()],
-                internals: vec![vec![Internals::default(); channels]; shown.len()],
+                agents: vec![vec![ChannelSample::default(); channels]; shown.len()],
+                internals: vec![vec![ObserverState::default(); channels]; shown.len()],
             });
         }
         let snapshot = &mut self.snapshots[snapshot];
@@ -344,7 +351,7 @@ impl<R: Real> Flight<'_, R> {
 
     fn collect<L: Lane, const NC: usize, const NS: usize, const NX: usize>(
         &mut self,
-        group: &mut Group<L, NC, NS, NX>,
+        group: &mut TeamState<L, NC, NS, NX>,
         first: usize,
     ) {
         let time = self.model.campaign.time;

@@ -40,7 +40,7 @@ pub(crate) struct Sample<L> {
 }
 
 /// The metrics of one channel of one episode. Averages and sums are over the steps from settle_s on, each step counted at its
-/// start; effort, largest command and limited share are over the whole run. The command u is that of [`super::Shown`].
+/// start; effort, largest command and limited share are over the whole run. The command u is that of [`super::ChannelSample`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ChannelOutcome {
     /// Root mean square of e.

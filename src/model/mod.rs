@@ -16,4 +16,4 @@ pub mod plant;
 pub(crate) mod subsystem;
 pub(crate) mod team;
 
-pub use team::{Internals, Shown};
+pub use team::{ChannelSample, ObserverState};

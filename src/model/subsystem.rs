@@ -30,7 +30,7 @@ pub(crate) enum PlantKind {
 }
 
 /// A group of channels and its reference table, `[half step][agent][channel][row]`.
-pub(crate) struct Part<R> {
+pub(crate) struct Subsystem<R> {
     pub(crate) plant: PlantKind,
     pub(crate) channels: Range<usize>,
     /// Rows of each channel.
@@ -39,7 +39,7 @@ pub(crate) struct Part<R> {
 }
 
 /// The parts of a campaign's episodes.
-pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Part<R>> {
+pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Subsystem<R>> {
     let (plants, rows) = match &campaign.agent {
         Agent::Uav(uav) => (uav_plants(uav, campaign.has_vortices()), 1),
         Agent::Biped(_) => {
@@ -56,7 +56,7 @@ pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Part<R>> {
         .collect();
     let part = |(plant, channels): (PlantKind, Range<usize>)| {
         let own = rows * channels.start..rows * channels.end;
-        Part {
+        Subsystem {
             plant,
             channels,
             rows,

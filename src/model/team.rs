@@ -8,10 +8,10 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::agent::{Agent, Coupling, Setting, Team};
+use super::agent::{Agent, Coupling, GroupParameters, Team};
 use super::controller::{Measured, OBSERVER, error_estimate, fault_estimates, step_channel};
 use super::exogenous::delay_line::Moment;
-use super::exogenous::{Signals, kernels};
+use super::exogenous::{ExogenousInputs, kernels};
 use super::integrator::Step;
 use super::lanes::{Kernel, Lane, MAX_WIDTH};
 use super::metric::ChannelOutcome;
@@ -34,7 +34,7 @@ pub(crate) struct Ending {
 }
 
 /// The state of a group between two steps.
-pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
+pub(crate) struct TeamState<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) agents: Vec<Agent<L, NC, NS, NX>>,
     episodes: [u32; MAX_WIDTH],
     /// Steps at which a fault switches, ascending.
@@ -51,7 +51,7 @@ pub(crate) struct Group<L: Lane, const NC: usize, const NS: usize, const NX: usi
 
 /// What one channel shows at one instant, `[lane]`.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Shown {
+pub struct ChannelSample {
     /// Reference.
     pub r: f64,
     /// State.
@@ -76,7 +76,7 @@ pub struct Shown {
 
 /// What the loop of one channel holds at one instant beside what it shows, `[lane]`: what inequality (24) weighs.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Internals {
+pub struct ObserverState {
     /// int e.
     pub integral: f64,
     /// The observer's states `[int e, e, e', F1 (2), F2 (2)]`, zero beyond those that it has.
@@ -85,7 +85,7 @@ pub struct Internals {
     pub told: f64,
 }
 
-impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS, NX> {
+impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC, NS, NX> {
     /// The group at step 0; `changes` are the steps at which a fault switches, in any order.
     pub(crate) fn new(
         agents: Vec<Agent<L, NC, NS, NX>>,
@@ -95,8 +95,12 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
         changes.push(0);
         changes.sort_unstable();
         changes.dedup();
-        let any = |is: fn(&Signals<L, NC>) -> bool| agents.iter().any(|agent| is(&agent.signals));
-        let (restless, remembers) = (any(Signals::is_restless), any(Signals::remembers));
+        let any =
+            |is: fn(&ExogenousInputs<L, NC>) -> bool| agents.iter().any(|agent| is(&agent.signals));
+        let (restless, remembers) = (
+            any(ExogenousInputs::is_restless),
+            any(ExogenousInputs::remembers),
+        );
         let shown = if agents.iter().any(|agent| !agent.vortices.is_empty()) {
             agents.len()
         } else {
@@ -157,7 +161,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn team_sum<P: Plant<L, NC, NX>, const STAGE: usize>(
         &self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
     ) -> [L; NC] {
         let mut sum = [L::number(0.0); NC];
@@ -177,7 +181,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn place_agents<P: Plant<L, NC, NX>, const STAGE: usize>(
         &mut self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
     ) {
         if NC > HEIGHT && !self.places.is_empty() {
@@ -193,7 +197,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn stage<P: Plant<L, NC, NX>, const STAGE: usize, const SETTLED: bool>(
         &mut self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         h: &Step<L::Real>,
     ) {
@@ -254,7 +258,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn advance<P: Plant<L, NC, NX>>(
         &mut self,
-        setting: &Setting<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, L::Real, NC>,
         until: u32,
     ) {
         let h = Step::new(setting.step_s);
@@ -296,8 +300,8 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
     #[inline(always)]
     pub(crate) fn show<P: Plant<L, NC, NX>>(
         &mut self,
-        setting: &Setting<'_, P, L::Real, NC>,
-    ) -> Vec<[(Shown, Internals); NC]> {
+        setting: &GroupParameters<'_, P, L::Real, NC>,
+    ) -> Vec<[(ChannelSample, ObserverState); NC]> {
         // Repeating this is harmless: what is held depends on the step alone.
         self.hold(setting.seed);
         let stride = self.agents.len() * NC * P::ROWS;
@@ -310,7 +314,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
             places: &self.places,
             size: self.agents.len(),
         };
-        let blank = (Shown::default(), Internals::default());
+        let blank = (ChannelSample::default(), ObserverState::default());
         let mut shown = vec![[blank; NC]; team.size];
         for (((own, agent), rows), shown) in self
             .agents
@@ -326,7 +330,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                 let state = agent.channels[c].at::<0>();
                 let [f1_hat, f2_hat] = fault_estimates(state);
                 let f1 = response.error_acceleration[c] - response.told[c];
-                let seen = Shown {
+                let seen = ChannelSample {
                     r: first_lane(position[c] - state[1]),
                     x: first_lane(position[c]),
                     e: first_lane(state[1]),
@@ -338,7 +342,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Group<L, NC, NS
                     f2_hat: first_lane(f2_hat),
                     u: first_lane(response.command[c]),
                 };
-                let mut held = Internals {
+                let mut held = ObserverState {
                     integral: first_lane(state[0]),
                     observer: [0.0; LOOP_STATES],
                     told: first_lane(response.told[c]),
@@ -414,10 +418,10 @@ fn finite_step(step: f64) -> Option<u32> {
     step.is_finite().then_some(step as u32)
 }
 
-/// [`Group::advance`] as a kernel.
+/// [`TeamState::advance`] as a kernel.
 pub(crate) struct Advance<'a, P, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) group: &'a mut Group<L, NC, NS, NX>,
-    pub(crate) setting: &'a Setting<'a, P, L::Real, NC>,
+    pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
+    pub(crate) setting: &'a GroupParameters<'a, P, L::Real, NC>,
     pub(crate) until: u32,
 }
 
@@ -431,16 +435,16 @@ impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: u
     }
 }
 
-/// [`Group::show`] as a kernel.
+/// [`TeamState::show`] as a kernel.
 pub(crate) struct Show<'a, P, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) group: &'a mut Group<L, NC, NS, NX>,
-    pub(crate) setting: &'a Setting<'a, P, L::Real, NC>,
+    pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
+    pub(crate) setting: &'a GroupParameters<'a, P, L::Real, NC>,
 }
 
 impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: usize> Kernel
     for Show<'_, P, L, NC, NS, NX>
 {
-    type Output = Vec<[(Shown, Internals); NC]>;
+    type Output = Vec<[(ChannelSample, ObserverState); NC]>;
     #[inline(always)]
     fn run(self) -> Self::Output {
         self.group.show(self.setting)

@@ -1,6 +1,6 @@
 //! The report of a run: a page that opens from disk, and the same in Markdown, made of the run's directory alone.
 //!
-//! Evidence (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
+//! Run data (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
 
 mod episode;
 pub mod junit;
@@ -21,7 +21,7 @@ use crate::run::error::REPORTS;
 use page::document::Document;
 use page::{html, markdown};
 use problems::{shortcoming, unmet};
-use run_data::Evidence;
+use run_data::RunData;
 use section::{conditions, errors, failures, gains, provenance, strata};
 use std::path::Path;
 
@@ -30,7 +30,7 @@ use std::path::Path;
 /// # Errors
 /// If the directory holds no run, or cannot be written.
 pub fn report(dir: &Path) -> Result<(), ReportError> {
-    let evidence = Evidence::read(dir)?;
+    let evidence = RunData::read(dir)?;
     let document = document(&evidence);
     let out = OutputDir::existing(dir);
     let [html, markdown] = REPORTS;
@@ -39,7 +39,7 @@ pub fn report(dir: &Path) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn document(evidence: &Evidence) -> Document {
+fn document(evidence: &RunData) -> Document {
     let manifest = &evidence.manifest;
     let campaign = &evidence.campaign;
     let wrong = [shortcoming(manifest, &evidence.dir), unmet(manifest)];

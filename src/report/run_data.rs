@@ -1,12 +1,12 @@
 //! All that the directory of a run holds: what a report is made of.
 
-use super::page::document::Key;
-use super::page::plot::Ink;
+use super::page::document::LegendEntry;
+use super::page::plot::Color;
 use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
 use crate::run::error::OutputError;
 use crate::run::manifest::Manifest;
-use crate::run::table_reader::Sheet;
+use crate::run::table_reader::TableReader;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -25,23 +25,23 @@ pub enum ReportError {
 }
 
 /// A run, read back from its directory.
-pub(crate) struct Evidence {
+pub(crate) struct RunData {
     pub(crate) dir: PathBuf,
     pub(crate) manifest: Manifest,
     pub(crate) campaign: Campaign,
     pub(crate) gains: GainSet,
     /// Outcomes and draws, by episode, controller and agent.
-    pub(crate) episodes: Sheet,
+    pub(crate) episodes: TableReader,
     /// RMS errors, by episode, controller, agent and channel.
-    pub(crate) channels: Sheet,
-    pub(crate) summary: Sheet,
-    pub(crate) comparison: Sheet,
-    pub(crate) screening: Sheet,
-    pub(crate) ranking: Sheet,
-    pub(crate) worst: Sheet,
+    pub(crate) channels: TableReader,
+    pub(crate) summary: TableReader,
+    pub(crate) comparison: TableReader,
+    pub(crate) screening: TableReader,
+    pub(crate) ranking: TableReader,
+    pub(crate) worst: TableReader,
 }
 
-impl Evidence {
+impl RunData {
     /// Reads a directory. Tables that a campaign does not have are empty.
     ///
     /// # Errors
@@ -50,9 +50,10 @@ impl Evidence {
         let manifest = Manifest::read(dir)?;
         let campaign = manifest.campaign()?;
         let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
-        let all = |name: &str| Sheet::read(dir, name, |_| true).map(Option::unwrap_or_default);
+        let all =
+            |name: &str| TableReader::read(dir, name, |_| true).map(Option::unwrap_or_default);
         let needed = |name: &str, wanted: fn(&str) -> bool| {
-            Sheet::read(dir, name, wanted)?.ok_or_else(|| OutputError::NoRun {
+            TableReader::read(dir, name, wanted)?.ok_or_else(|| OutputError::NoRun {
                 path: dir.to_path_buf(),
                 reason: format!("{name}.parquet is missing"),
             })
@@ -75,10 +76,10 @@ impl Evidence {
     }
 
     /// The controllers with their colours.
-    pub(crate) fn legend(&self) -> Vec<Key> {
+    pub(crate) fn legend(&self) -> Vec<LegendEntry> {
         let names = self.campaign.controllers.iter().enumerate();
         names
-            .map(|(index, name)| Key::line(Ink::Series(index), name))
+            .map(|(index, name)| LegendEntry::line(Color::Series(index), name))
             .collect()
     }
 
@@ -86,7 +87,7 @@ impl Evidence {
     /// agent diverged. Rows that `wanted` refuses are left out.
     pub(crate) fn of_teams(
         &self,
-        sheet: &Sheet,
+        sheet: &TableReader,
         column: &str,
         wanted: impl Fn(usize) -> bool,
     ) -> Vec<Vec<f64>> {

@@ -23,7 +23,7 @@ pub use columns::{comparison_table, screening_table, summary_table};
 pub(crate) use paired::log_ratios;
 pub use paired::{Measured, PairedComparison, Ratio, compare};
 pub use requirements::{RequirementResult, requirements};
-pub use screening::{Harm, Screening, screen};
+pub use screening::{FaultEffect, Screening, screen};
 pub use summary::{FailureRate, MetricQuantiles, summarise};
 pub use verdict::{how_sure, verdict};
 pub use worst_fault::harm;

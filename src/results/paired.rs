@@ -1,6 +1,6 @@
 //! How pairs of controllers compare on the same episodes.
 
-use super::strata::{Part, parts, replicates};
+use super::strata::{Subset, parts, replicates};
 use super::tables::{Scores, Status};
 use super::{Layout, Replicated, over_replicates};
 use crate::campaign::Campaign;
@@ -114,7 +114,7 @@ fn compare_pair(
     campaign: &Campaign,
     scores: &Scores,
     [a, b]: [usize; 2],
-    parts: &[Part],
+    parts: &[Subset],
 ) -> Vec<PairedComparison> {
     let groups = campaign.channel_groups().into_iter();
     let groups = groups.map(|group| ("group", Arc::from(group.role.name()), group.channels));
@@ -128,7 +128,7 @@ fn compare_pair(
         })
         .collect();
     let paired = allows(campaign.sampling.design(), Method::Paired);
-    let of_part = |part: &Part| {
+    let of_part = |part: &Subset| {
         let failures = paired_failures(scores, [a, b], &part.episodes);
         let difference = |episodes: &Vec<usize>| {
             let failures = paired_failures(scores, [a, b], episodes);
@@ -195,7 +195,7 @@ fn ratio(
     campaign: &Campaign,
     scores: &Scores,
     [a, b]: [usize; 2],
-    part: &Part,
+    part: &Subset,
     scope: &'static str,
     name: &Arc<str>,
     log_ratios: &[f64],

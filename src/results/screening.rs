@@ -5,7 +5,7 @@
 //! Statistics 9:1026-1034): one is ruled out if another is worse by a one-sided interval at 1 - 5 % / (k - 1), of k strata. The
 //! stratum that is truly the worst meets k - 1 others, so it is ruled out with a probability of 5 % at most, whichever it is.
 
-use super::strata::{Part, parts};
+use super::strata::{Subset, parts};
 use super::tables::Scores;
 use super::{FailureRate, Layout, team_rmse};
 use crate::agent::ChannelGroup;
@@ -22,7 +22,7 @@ pub struct Screening {
     /// The stratum that the others are compared with.
     pub reference: Arc<str>,
     /// The other strata with certain faults, in the campaign's order.
-    pub harms: Vec<Harm>,
+    pub harms: Vec<FaultEffect>,
     /// The strata (of `harms`, by index) that cannot be told apart, at 95 %, from the one that fails most often, which is the
     /// first.
     pub most_failures: Vec<usize>,
@@ -32,7 +32,7 @@ pub struct Screening {
 
 /// What a stratum does to a controller.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Harm {
+pub struct FaultEffect {
     /// The stratum.
     pub stratum: Arc<str>,
     /// How often the controller fails there.
@@ -47,14 +47,14 @@ pub struct Harm {
 #[must_use]
 pub fn screen(campaign: &Campaign, scores: &Scores) -> Vec<Screening> {
     let parts = parts(campaign, scores);
-    let certain: Vec<(&Part, bool)> = campaign
+    let certain: Vec<(&Subset, bool)> = campaign
         .strata
         .all()
         .iter()
         .zip(parts.get(1..).unwrap_or_default())
         .filter_map(|(stratum, part)| match &stratum.faults {
             StratumFaults::Certain(faults) => Some((part, faults.is_empty())),
-            StratumFaults::Drawn => None,
+            StratumFaults::RandomQuantity => None,
         })
         .collect();
     if certain.len() < 2 {
@@ -68,7 +68,7 @@ fn screen_controller(
     campaign: &Campaign,
     scores: &Scores,
     controller: usize,
-    certain: &[(&Part, bool)],
+    certain: &[(&Subset, bool)],
 ) -> Screening {
     let rates: Vec<FailureRate> = certain
         .iter()
@@ -96,7 +96,7 @@ fn screen_controller(
         .map(|ChannelGroup { channels, .. }| {
             let layout = Layout::new(campaign, channels.clone());
             let rmse = team_rmse(scores, controller, &layout);
-            let of_part = |(part, _): &(&Part, bool)| {
+            let of_part = |(part, _): &(&Subset, bool)| {
                 let mut logs: Vec<f64> = part.episodes.iter().map(|&k| rmse[k].ln()).collect();
                 logs.sort_unstable_by(f64::total_cmp);
                 logs
@@ -116,7 +116,7 @@ fn screen_controller(
         reference: certain[reference].0.name.clone(),
         harms: others
             .iter()
-            .map(|&k| Harm {
+            .map(|&k| FaultEffect {
                 stratum: certain[k].0.name.clone(),
                 rate: rates[k].clone(),
                 failures: difference(&share, k, reference, LEVEL),

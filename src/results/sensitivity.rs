@@ -34,7 +34,7 @@ pub struct Target {
 
 /// The effect of a condition on a target, over the episodes in which it applies.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RankedCondition {
+pub struct SensitivityResult {
     /// What it has an effect on.
     pub target: Target,
     /// The condition, as [`crate::draw::quantities`] names it.
@@ -77,7 +77,7 @@ pub struct WorstEpisode {
 
 /// The effects of all conditions that vary, of each target the largest trend first.
 #[must_use]
-pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
+pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
     let named: Vec<(&String, Ranked)> = scores
         .conditions
         .iter()
@@ -108,10 +108,10 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
             .filter_map(|(name, effect)| Some((name, effect?)))
             .collect();
         let p_values: Vec<f64> = found.iter().map(|(_, effect)| effect.p_value()).collect();
-        let mut ranked: Vec<RankedCondition> = found
+        let mut ranked: Vec<SensitivityResult> = found
             .into_iter()
             .zip(holm(&p_values))
-            .map(|((name, effect), p_holm)| RankedCondition {
+            .map(|((name, effect), p_holm)| SensitivityResult {
                 target: target.clone(),
                 condition: (*name).clone(),
                 effect,
@@ -121,7 +121,7 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<RankedCondition> {
                 p_holm: tested.then_some(p_holm),
             })
             .collect();
-        let size = |ranked: &RankedCondition| ranked.effect.trend.value.abs();
+        let size = |ranked: &SensitivityResult| ranked.effect.trend.value.abs();
         ranked.sort_by(|a, b| size(b).total_cmp(&size(a)));
         ranked
     };
@@ -139,7 +139,7 @@ pub(crate) fn by_chance(
     condition: &str,
     values: &[Option<f64>],
 ) -> Vec<Option<f64>> {
-    let draws = |stratum: &Stratum| stratum.faults == StratumFaults::Drawn;
+    let draws = |stratum: &Stratum| stratum.faults == StratumFaults::RandomQuantity;
     let strata = &campaign.strata;
     let only_drawn = match fault_of(condition) {
         Some((fault, _)) if campaign.faults[fault].background => false,
@@ -310,9 +310,9 @@ impl Bad {
 
 /// [`rank`] as a table.
 #[must_use]
-pub fn ranking_table(ranking: &[RankedCondition]) -> Table {
+pub fn ranking_table(ranking: &[SensitivityResult]) -> Table {
     let mut table = Table::default();
-    for RankedCondition {
+    for SensitivityResult {
         target,
         condition,
         effect,

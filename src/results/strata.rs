@@ -6,23 +6,23 @@ use std::sync::Arc;
 
 /// Episodes that are looked at together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Part {
+pub(crate) struct Subset {
     pub(crate) name: Arc<str>,
     pub(crate) episodes: Vec<usize>,
 }
 
 /// All episodes, then those of each stratum. Where the campaign is not divided, those with and without each fault that only some
 /// episodes have.
-pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Part> {
+pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Subset> {
     let all: Vec<usize> = (0..scores.episodes()).collect();
-    let mut parts = vec![Part {
+    let mut parts = vec![Subset {
         name: ALL.into(),
         episodes: all.clone(),
     }];
     for (index, stratum) in campaign.strata.all().iter().enumerate() {
         let own = (0u32..).zip(&all);
         let own = own.filter(|(episode, _)| campaign.strata.index(*episode) == Some(index));
-        parts.push(Part {
+        parts.push(Subset {
             name: stratum.name.clone(),
             episodes: own.map(|(_, place)| *place).collect(),
         });
@@ -35,7 +35,7 @@ pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Part> {
             let (with, without) = all.iter().copied().partition(|&episode| occurs[episode]);
             for (word, episodes) in [("with", with), ("without", without)] {
                 let name = format!("{word} fault{index} {}", fault.name).into();
-                parts.push(Part { name, episodes });
+                parts.push(Subset { name, episodes });
             }
         }
     }

@@ -1,6 +1,6 @@
 //! How often each controller failed, and how large its errors were.
 
-use super::strata::{Part, parts, replicates};
+use super::strata::{Subset, parts, replicates};
 use super::tables::{Scores, Status};
 use super::{Layout, over_replicates};
 use crate::agent::ChannelGroup;
@@ -60,7 +60,12 @@ impl FailureRate {
     }
 
     /// Counts the failures of a controller in a part of the episodes.
-    pub(super) fn of(campaign: &Campaign, scores: &Scores, controller: usize, part: &Part) -> Self {
+    pub(super) fn of(
+        campaign: &Campaign,
+        scores: &Scores,
+        controller: usize,
+        part: &Subset,
+    ) -> Self {
         let status = &scores.status[controller];
         let count = |episodes: &[usize], wanted: &[Status]| {
             let of_these = |episode: &&usize| wanted.contains(&status[**episode]);

@@ -1,10 +1,10 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use crate::agent::{Agent, ChannelGroup};
-use crate::backend::Flown;
+use crate::backend::EpisodeResult;
 use crate::campaign::{Campaign, Parameter, Time};
 use crate::draw::AgentDraw;
-use crate::draw::quantities::{Condition, conditions};
+use crate::draw::quantities::{DrawnQuantity, conditions};
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
 use polars::prelude::{
@@ -221,24 +221,24 @@ impl Tables {
     }
 
     /// Adds an episode; episodes are added in order.
-    pub fn add(&mut self, campaign: &Campaign, flown: &Flown) {
+    pub fn add(&mut self, campaign: &Campaign, flown: &EpisodeResult) {
         let draws = &flown.episode.agents;
         for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
             occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
         }
         let conditions = conditions(campaign, &flown.episode);
         if self.scores.conditions.is_empty() {
-            let named = |(name, _): &Condition| (name.clone(), Vec::new());
+            let named = |(name, _): &DrawnQuantity| (name.clone(), Vec::new());
             self.scores.conditions = conditions.iter().map(named).collect();
         }
         for ((_, values), (_, value)) in self.scores.conditions.iter_mut().zip(conditions) {
             values.push(value);
         }
         for (controller, (name, outcomes)) in self.names.iter().zip(&flown.outcomes).enumerate() {
-            let agents: Vec<Judged<'_>> = outcomes
+            let agents: Vec<AgentVerdict<'_>> = outcomes
                 .iter()
                 .zip(draws)
-                .map(|(outcome, draw)| Judged::new(campaign, outcome, draw))
+                .map(|(outcome, draw)| AgentVerdict::new(campaign, outcome, draw))
                 .collect();
             let worst = agents
                 .iter()
@@ -294,14 +294,14 @@ pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
 }
 
 /// An agent's outcome and what the verdict makes of it.
-struct Judged<'a> {
+struct AgentVerdict<'a> {
     outcome: &'a AgentOutcome,
     status: Status,
     /// The step of the agent's first fault that does not begin with the run.
     first_fault: Option<u32>,
 }
 
-impl<'a> Judged<'a> {
+impl<'a> AgentVerdict<'a> {
     fn new(campaign: &Campaign, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
         Self {
             outcome,

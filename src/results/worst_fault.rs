@@ -1,6 +1,6 @@
 //! Which stratum hurts each controller most, in sentences.
 
-use super::screening::{Harm, Screening};
+use super::screening::{FaultEffect, Screening};
 use crate::statistics::Estimate;
 
 /// Names that a sentence lists.
@@ -63,7 +63,7 @@ fn by_growth(screening: &Screening) -> Vec<String> {
     let of_group = |(group, most): (usize, &Vec<usize>)| {
         let top = &screening.harms[*most.first()?];
         let (name, growth) = top.growth.get(group)?;
-        let known = |harm: &Harm| harm.growth.get(group).is_some_and(|own| own.1.is_some());
+        let known = |harm: &FaultEffect| harm.growth.get(group).is_some_and(|own| own.1.is_some());
         if !screening.harms.iter().any(known) {
             let too_few = "too few episodes in each stratum to tell which fault makes it grow most";
             return Some(format!("RMS error, {name}: {too_few}"));

@@ -4,7 +4,7 @@ use super::error::{MANIFEST, OutputError};
 use crate::backend::cpu::Precision;
 use crate::campaign::{Campaign, CampaignError};
 use crate::results::RequirementResult;
-use crate::simulation::Leg;
+use crate::simulation::Segment;
 use crate::simulation::Times;
 use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::stopping::Stopped;
@@ -45,7 +45,7 @@ pub struct Manifest {
     /// Number format of the episode loop.
     pub precision: Precision,
     /// What flew them.
-    pub legs: Vec<Leg>,
+    pub legs: Vec<Segment>,
     /// What there is to know about the choice of the backend.
     pub notes: Vec<String>,
     /// How some episodes compare with the reference, if they were.

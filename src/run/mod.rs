@@ -13,10 +13,10 @@ use crate::campaign::Campaign;
 use crate::controllers::{GainSet, GainsError};
 use crate::results;
 use crate::results::sensitivity;
-use crate::results::sensitivity::{RankedCondition, WorstEpisode};
+use crate::results::sensitivity::{SensitivityResult, WorstEpisode};
 use crate::results::{MetricQuantiles, PairedComparison, Screening};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
-use crate::simulation::{Engine, Flight, FlightError, Settings, fly, open};
+use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, fly, open};
 use directory::OutputDir;
 use error::{MANIFEST, OutputError};
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
@@ -35,7 +35,7 @@ pub enum RunError {
     Output(#[from] OutputError),
     /// Nothing flown.
     #[error(transparent)]
-    Flight(#[from] FlightError),
+    Simulation(#[from] SimulationError),
     /// Fewer episodes flown than the directory holds already.
     #[error(
         "{reason}; {flown} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
@@ -66,7 +66,7 @@ pub struct Findings {
     /// What each stratum does to each controller.
     pub screenings: Vec<Screening>,
     /// What each condition does to each controller and pair.
-    pub ranking: Vec<RankedCondition>,
+    pub ranking: Vec<SensitivityResult>,
     /// The worst episodes of each controller.
     pub worst: Vec<WorstEpisode>,
     /// How it was found, and what became of the requirements.
@@ -79,9 +79,9 @@ pub enum Progress {
     /// The gains are synthesized or read.
     Gains,
     /// The flight begins.
-    Flight,
+    Simulation,
     /// So many more episodes have been flown.
-    Flown(u32),
+    Simulated(u32),
     /// Some episodes fly again on the reference.
     CrossCheck,
     /// Intervals and tests.
@@ -109,13 +109,13 @@ pub const GPU_CROSS_CHECK: u32 = 32;
 /// If gains cannot be had, nothing can be flown, or files cannot be written.
 pub fn run(
     campaign: &Campaign,
-    settings: &Settings,
+    options: &RunOptions,
     out: &OutputDir,
     extras: Extras,
     told: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
-    let (gpu, notes) = open(settings)?;
-    run_on(campaign, settings, gpu.as_ref(), notes, out, extras, told)
+    let (gpu, notes) = open(options)?;
+    run_on(campaign, options, gpu.as_ref(), notes, out, extras, told)
 }
 
 /// [`run`] on a device at hand, to test what becomes of a run whose device fails.
@@ -125,7 +125,7 @@ pub fn run(
 #[doc(hidden)]
 pub fn run_on(
     campaign: &Campaign,
-    settings: &Settings,
+    options: &RunOptions,
     gpu: Option<&Gpu>,
     mut notes: Vec<String>,
     out: &OutputDir,
@@ -134,21 +134,21 @@ pub fn run_on(
 ) -> Result<Findings, RunError> {
     let start = Instant::now();
     told(Progress::Gains);
-    let gains = GainSet::obtain(campaign)?;
+    let gains = GainSet::synthesize_or_load(campaign)?;
     let synthesis_s = start.elapsed().as_secs_f64();
 
-    told(Progress::Flight);
-    let flown = |episodes| told(Progress::Flown(episodes));
-    let flight = fly(campaign, &gains, settings, gpu, &flown)?;
+    told(Progress::Simulation);
+    let flown = |episodes| told(Progress::Simulated(episodes));
+    let flight = fly(campaign, &gains, options, gpu, &flown)?;
     notes.extend(flight.notes.iter().cloned());
     let start = Instant::now();
     told(Progress::CrossCheck);
     let (cross_check, cross_check_missing) =
-        match checked(campaign, &gains, settings, gpu, &flight, extras.cross_check) {
+        match checked(campaign, &gains, options, gpu, &flight, extras.cross_check) {
             Ok(check) => (check, None),
             Err(error) => (None, Some(error.to_string())),
         };
-    let Flight {
+    let Simulation {
         tables,
         watch,
         mut times,
@@ -232,7 +232,7 @@ pub fn run_on(
         verdict: results::verdict(&summary, &comparisons),
         harm: results::harm(&screenings),
         interrupted: interrupted.map(|error| error.to_string()),
-        precision: settings.precision,
+        precision: options.precision,
         legs,
         notes,
         cross_check,
@@ -254,9 +254,9 @@ pub fn run_on(
 fn checked(
     campaign: &Campaign,
     gains: &GainSet,
-    settings: &Settings,
+    options: &RunOptions,
     gpu: Option<&Gpu>,
-    flight: &Flight,
+    flight: &Simulation,
     count: Option<u32>,
 ) -> Result<Option<CrossCheck>, GpuError> {
     let Some(leg) = flight.legs.first() else {
@@ -272,7 +272,7 @@ fn checked(
         return Ok(None);
     }
     let scores = &flight.tables.scores;
-    let check = || cross_check(campaign, gains, settings, leg, scores, gpu, count);
+    let check = || cross_check(campaign, gains, options, leg, scores, gpu, count);
     flight.pool.install(check).map(Some)
 }
 

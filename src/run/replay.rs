@@ -3,14 +3,14 @@
 use super::error::{MANIFEST, OutputError};
 use super::manifest::Manifest;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::backend::gpu::{Adapter, Gpu, GpuFlyer, Tuning, Wanted};
+use crate::backend::gpu::{Adapter, Gpu, GpuSimulator, Tuning, Wanted};
 use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::results::tables::Table;
 use crate::simulation::Engine;
-use crate::simulation::attenuation::{Attenuations, Witness};
+use crate::simulation::attenuation::{AttenuationAnalysis, Attenuations};
 use crate::util::suggest::did_you_mean;
 use std::path::Path;
 use thiserror::Error;
@@ -60,14 +60,14 @@ pub struct Replay {
     /// What every agent and channel showed.
     pub snapshots: Vec<Snapshot>,
     /// The same episode under the campaign's other controllers, in its order, to look at side by side.
-    pub others: Vec<OtherFlight>,
+    pub others: Vec<OtherController>,
     /// What inequality (24) says about it, `[agent][channel]`, from a flight in double precision on the CPU.
     pub attenuations: Attenuations,
 }
 
 /// The episode under a controller that was not asked for.
 #[derive(Debug)]
-pub struct OtherFlight {
+pub struct OtherController {
     /// Which of the campaign's controllers.
     pub controller: usize,
     /// How each agent ended.
@@ -127,7 +127,7 @@ pub fn replay(
         let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
         cpu.trace(episode, controller, every)
     };
-    let fly = |precision, simd| -> Vec<Flown> {
+    let fly = |precision, simd| -> Vec<Trajectory> {
         let controllers = 0..campaign.controllers.len();
         controllers
             .map(|controller| fly_one(precision, simd, controller, every))
@@ -155,21 +155,21 @@ pub fn replay(
             .into());
         }
     };
-    let mut others: Vec<OtherFlight> = flown
+    let mut others: Vec<OtherController> = flown
         .into_iter()
         .enumerate()
-        .map(|(controller, (outcomes, snapshots))| OtherFlight {
+        .map(|(controller, (outcomes, snapshots))| OtherController {
             controller,
             outcomes,
             snapshots,
         })
         .collect();
-    let OtherFlight {
+    let OtherController {
         outcomes,
         snapshots,
         ..
     } = others.remove(index);
-    let witness = Witness::new(&campaign, &gains, index);
+    let witness = AttenuationAnalysis::new(&campaign, &gains, index);
     let attenuations = witness.of_episode(episode, || fly_one(Precision::F64, None, index, 1).1);
     Ok(Replay {
         campaign,
@@ -210,7 +210,7 @@ fn quoted(word: &str) -> String {
 }
 
 /// How each agent ended, and what it showed.
-type Flown = (Vec<AgentOutcome>, Vec<Snapshot>);
+type Trajectory = (Vec<AgentOutcome>, Vec<Snapshot>);
 
 /// Flies under all controllers on the adapter of the run, or says why that cannot be.
 fn on_gpu(
@@ -219,14 +219,14 @@ fn on_gpu(
     gains: &GainSet,
     episode: u32,
     every: u32,
-) -> Result<Vec<Flown>, String> {
+) -> Result<Vec<Trajectory>, String> {
     let gpu = Gpu::open(Wanted::Same(adapter)).map_err(|error| error.to_string())?;
     let tuning = Tuning {
         batch: Some(1),
         ..Tuning::default()
     };
-    let mut flyer =
-        GpuFlyer::new(&gpu, campaign, &gains.loops(), tuning).map_err(|error| error.to_string())?;
+    let mut flyer = GpuSimulator::new(&gpu, campaign, &gains.loops(), tuning)
+        .map_err(|error| error.to_string())?;
     let mut snapshots: Vec<Vec<Snapshot>> = vec![Vec::new(); campaign.controllers.len()];
     let flown = flyer
         .trace(&[episode], every, &mut |instant| {
@@ -281,7 +281,7 @@ impl Replay {
         for snapshot in &self.snapshots {
             for (agent, channels) in (0u64..).zip(&snapshot.agents) {
                 for (channel, shown) in self.campaign.channels().iter().zip(channels) {
-                    let Shown {
+                    let ChannelSample {
                         r,
                         x,
                         e,

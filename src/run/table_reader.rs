@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far as they go.
 #[derive(Debug, Default)]
-pub(crate) struct Sheet {
+pub(crate) struct TableReader {
     names: Vec<String>,
     columns: HashMap<String, Column>,
     rows: usize,
@@ -21,7 +21,7 @@ enum Column {
     Texts(Vec<String>),
 }
 
-impl Sheet {
+impl TableReader {
     /// Reads `<dir>/<name>.parquet`, of all columns those that are `wanted`; none if there is no such file.
     ///
     /// # Errors

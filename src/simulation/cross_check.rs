@@ -1,13 +1,13 @@
 //! Some episodes of a run again on the CPU in double precision: whether the run may be trusted.
 
-use super::attenuation::{Attenuations, GroupAttenuation, Witness};
-use super::{Engine, Leg, Settings};
-use crate::backend::Flown;
+use super::attenuation::{AttenuationAnalysis, Attenuations, GroupAttenuation};
+use super::{Engine, RunOptions, Segment};
+use crate::backend::EpisodeResult;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
+use crate::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning};
 use crate::campaign::{Campaign, Verdict};
 use crate::controllers::GainSet;
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::random::philox::{Address, Stream};
 use crate::results::tables::{Scores, Status, status};
@@ -89,8 +89,8 @@ impl CrossCheck {
 pub fn cross_check(
     campaign: &Campaign,
     gains: &GainSet,
-    settings: &Settings,
-    leg: &Leg,
+    options: &RunOptions,
+    leg: &Segment,
     scores: &Scores,
     gpu: Option<&Gpu>,
     count: u32,
@@ -105,15 +105,15 @@ pub fn cross_check(
         (Engine::Gpu { .. }, Some(gpu)) => {
             let tuning = Tuning {
                 batch: u32::try_from(episodes.len()).ok(),
-                ..settings.tuning
+                ..options.tuning
             };
-            Tracer::Gpu(Box::new(GpuFlyer::new(gpu, campaign, &loops, tuning)?))
+            Tracer::Gpu(Box::new(GpuSimulator::new(gpu, campaign, &loops, tuning)?))
         }
         _ => Tracer::Cpu(Box::new(Cpu::new(
             campaign,
             &loops,
-            settings.precision,
-            settings.simd,
+            options.precision,
+            options.simd,
         ))),
     };
     let mut check = CrossCheck {
@@ -155,7 +155,7 @@ fn attenuation(
     let controllers = gains.controllers.iter().enumerate();
     let certified = controllers.filter(|(_, controller)| controller.is_certified());
     let of_controller = |(index, _)| {
-        let witness = Witness::new(campaign, gains, index);
+        let witness = AttenuationAnalysis::new(campaign, gains, index);
         let of_episode =
             |&episode: &u32| witness.of_episode(episode, || reference.trace(episode, index, 1).1);
         let chunks = episodes.chunks(WHOLE);
@@ -169,7 +169,7 @@ fn attenuation(
 
 /// What flies the episodes that are checked.
 enum Tracer<'g> {
-    Gpu(Box<GpuFlyer<'g>>),
+    Gpu(Box<GpuSimulator<'g>>),
     Cpu(Box<Cpu>),
 }
 
@@ -180,8 +180,8 @@ struct Traced {
     errors: Vec<Vec<Vec<f64>>>,
 }
 
-fn errors(agents: &[Vec<Shown>]) -> Vec<Vec<f64>> {
-    let of_agent = |channels: &Vec<Shown>| channels.iter().map(|shown| shown.e).collect();
+fn errors(agents: &[Vec<ChannelSample>]) -> Vec<Vec<f64>> {
+    let of_agent = |channels: &Vec<ChannelSample>| channels.iter().map(|shown| shown.e).collect();
     agents.iter().map(of_agent).collect()
 }
 
@@ -214,21 +214,21 @@ fn nudged(loops: &[Vec<LoopGains>]) -> Vec<Vec<LoopGains>> {
 
 /// `[episode][controller]`.
 fn trace_on_gpu(
-    flyer: &mut GpuFlyer<'_>,
+    flyer: &mut GpuSimulator<'_>,
     episodes: &[u32],
     controllers: usize,
     every: u32,
 ) -> Result<Vec<Vec<Traced>>, GpuError> {
     let mut seen: Vec<Vec<Vec<Vec<Vec<f64>>>>> =
         vec![vec![Vec::new(); controllers]; episodes.len()];
-    let flown: Vec<Flown> = flyer.trace(episodes, every, &mut |instant| {
+    let flown: Vec<EpisodeResult> = flyer.trace(episodes, every, &mut |instant| {
         for (episode, seen) in seen.iter_mut().enumerate() {
             for (controller, seen) in seen.iter_mut().enumerate() {
                 seen.push(errors(&instant.agents(episode, controller)));
             }
         }
     })?;
-    let of_episode = |(flown, seen): (Flown, Vec<_>)| {
+    let of_episode = |(flown, seen): (EpisodeResult, Vec<_>)| {
         let pairs = flown.outcomes.into_iter().zip(seen);
         pairs
             .map(|(outcomes, errors)| Traced { outcomes, errors })
@@ -238,7 +238,7 @@ fn trace_on_gpu(
 }
 
 /// Distinct episodes of a leg, drawn evenly, in ascending order.
-fn choose(seed: u64, leg: &Leg, count: u32) -> Vec<u32> {
+fn choose(seed: u64, leg: &Segment, count: u32) -> Vec<u32> {
     let count = count.min(leg.episodes) as usize;
     let mut chosen = BTreeSet::new();
     for index in 0.. {
@@ -381,7 +381,7 @@ mod tests {
     fn smoke() -> (Campaign, Vec<Vec<LoopGains>>) {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/smoke.toml");
         let campaign = Campaign::load(&path).unwrap();
-        let loops = GainSet::obtain(&campaign).unwrap().loops();
+        let loops = GainSet::synthesize_or_load(&campaign).unwrap().loops();
         (campaign, loops)
     }
 

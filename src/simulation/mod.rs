@@ -7,9 +7,9 @@ mod times;
 
 pub use times::Times;
 
-use crate::backend::Flown;
+use crate::backend::EpisodeResult;
 use crate::backend::cpu::{Cpu, Precision, Simd};
-use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuFlyer, GpuTimes, Tuning, Wanted};
+use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuSimulator, GpuTimes, Tuning, Wanted};
 use crate::campaign::Campaign;
 use crate::controllers::GainSet;
 use crate::results::tables::{Status, Tables};
@@ -19,7 +19,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
-use stopping::Watch;
+use stopping::StoppingRule;
 use thiserror::Error;
 
 /// Episodes of the CPU between two additions to the tables: enough to keep many cores busy, few enough to keep memory small.
@@ -44,12 +44,12 @@ pub enum Backend {
 
 /// How a campaign is to be flown.
 #[derive(Debug, Clone)]
-pub struct Settings {
+pub struct RunOptions {
     /// Where.
     pub backend: Backend,
     /// Number format of the episode loop; double precision flies on the CPU.
     pub precision: Precision,
-    /// Layout of the CPU's single-precision episodes; the widest of this processor if not given.
+    /// Words of the CPU's single-precision episodes; the widest of this processor if not given.
     pub simd: Option<Simd>,
     /// Threads; all cores if zero.
     pub threads: usize,
@@ -57,7 +57,7 @@ pub struct Settings {
     pub tuning: Tuning,
 }
 
-impl Settings {
+impl RunOptions {
     /// On the CPU, with all its cores and the widest lanes.
     #[must_use]
     pub fn cpu(precision: Precision) -> Self {
@@ -73,7 +73,7 @@ impl Settings {
 
 /// Why nothing could be flown.
 #[derive(Debug, Error)]
-pub enum FlightError {
+pub enum SimulationError {
     /// No threads.
     #[error("--threads {threads}: the threads cannot be started ({source}); use fewer")]
     Threads {
@@ -92,7 +92,7 @@ pub enum FlightError {
 
 /// Consecutive episodes, and what flew them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Leg {
+pub struct Segment {
     /// The first episode.
     pub first: u32,
     /// How many.
@@ -108,7 +108,7 @@ pub struct Leg {
 pub enum Engine {
     /// The CPU backend.
     Cpu {
-        /// Layout of single-precision episodes.
+        /// Words of single-precision episodes.
         simd: Option<Simd>,
         /// Threads.
         threads: usize,
@@ -141,15 +141,15 @@ impl fmt::Display for Engine {
 }
 
 /// The tables of a flown campaign, and how they came about.
-pub struct Flight {
+pub struct Simulation {
     /// The tables.
     pub tables: Tables,
     /// What has ended the run early, if it has.
-    pub watch: Watch,
+    pub watch: StoppingRule,
     /// Times so far.
     pub times: Times,
     /// What flew, in the order of the episodes; together they are the first episodes of the campaign.
-    pub legs: Vec<Leg>,
+    pub legs: Vec<Segment>,
     /// What the user should know of the choice of the backend.
     pub notes: Vec<String>,
     /// Why episodes are missing, if they are.
@@ -158,7 +158,7 @@ pub struct Flight {
     pub pool: ThreadPool,
 }
 
-impl Flight {
+impl Simulation {
     /// Episodes that were flown.
     #[must_use]
     pub fn episodes(&self) -> u32 {
@@ -170,17 +170,17 @@ impl Flight {
 ///
 /// # Errors
 /// If a GPU is asked for and is not to be had.
-pub fn open(settings: &Settings) -> Result<(Option<Gpu>, Vec<String>), FlightError> {
-    let opened = match &settings.backend {
+pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), SimulationError> {
+    let opened = match &options.backend {
         Backend::Cpu => return Ok((None, Vec::new())),
         Backend::Gpu { adapter: None } => {
-            Gpu::open(Wanted::Hardware).map_err(FlightError::NoGpu)?
+            Gpu::open(Wanted::Hardware).map_err(SimulationError::NoGpu)?
         }
         Backend::Gpu {
             adapter: Some(name),
-        } => Gpu::open(Wanted::Named(name)).map_err(FlightError::NoGpu)?,
+        } => Gpu::open(Wanted::Named(name)).map_err(SimulationError::NoGpu)?,
         // Double precision, or a layout of lanes, says that the CPU is meant.
-        Backend::Auto if settings.precision == Precision::F64 || settings.simd.is_some() => {
+        Backend::Auto if options.precision == Precision::F64 || options.simd.is_some() => {
             return Ok((None, Vec::new()));
         }
         Backend::Auto => match Gpu::open(Wanted::Hardware) {
@@ -200,18 +200,18 @@ pub fn open(settings: &Settings) -> Result<(Option<Gpu>, Vec<String>), FlightErr
 pub fn fly(
     campaign: &Campaign,
     gains: &GainSet,
-    settings: &Settings,
+    options: &RunOptions,
     gpu: Option<&Gpu>,
     done: &(dyn Fn(u32) + Sync),
-) -> Result<Flight, FlightError> {
-    let threads = settings.threads;
+) -> Result<Simulation, SimulationError> {
+    let threads = options.threads;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|source| FlightError::Threads { threads, source })?;
-    let mut flight = Flight {
+        .map_err(|source| SimulationError::Threads { threads, source })?;
+    let mut flight = Simulation {
         tables: Tables::new(campaign),
-        watch: Watch::new(campaign),
+        watch: StoppingRule::new(campaign),
         times: Times::default(),
         legs: Vec::new(),
         notes: Vec::new(),
@@ -221,7 +221,7 @@ pub fn fly(
     // Of a batch that a GPU does not finish, episodes were told as done already.
     let told = AtomicU32::new(0);
     if let Some(gpu) = gpu {
-        let failure = flight.on_gpu(gpu, campaign, gains, settings, &|episodes| {
+        let failure = flight.on_gpu(gpu, campaign, gains, options, &|episodes| {
             told.fetch_add(episodes, Ordering::Relaxed);
             done(episodes);
         });
@@ -229,18 +229,18 @@ pub fn fly(
         told.fetch_sub(flown, Ordering::Relaxed);
         match failure {
             None => {}
-            Some(error) if settings.backend == Backend::Auto => flight.notes.push(format!(
+            Some(error) if options.backend == Backend::Auto => flight.notes.push(format!(
                 "the GPU failed after {flown} of {} episodes, which are not cross-checked, and the CPU flew the others: {error}",
                 campaign.episodes
             )),
-            Some(error) if flown == 0 => return Err(FlightError::Gpu(error)),
+            Some(error) if flown == 0 => return Err(SimulationError::Gpu(error)),
             Some(error) => {
                 flight.interrupted = Some(error);
                 return Ok(flight);
             }
         }
     }
-    flight.on_cpu(campaign, gains, settings, &|episodes| {
+    flight.on_cpu(campaign, gains, options, &|episodes| {
         let take = |told: u32| Some(told - told.min(episodes));
         let told = told.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
         done(episodes - told.unwrap_or_default().min(episodes));
@@ -248,7 +248,7 @@ pub fn fly(
     Ok(flight)
 }
 
-impl Flight {
+impl Simulation {
     /// Episodes in the tables.
     fn recorded(&self) -> u32 {
         u32::try_from(self.tables.scores.episodes()).unwrap_or(u32::MAX)
@@ -260,11 +260,11 @@ impl Flight {
         gpu: &Gpu,
         campaign: &Campaign,
         gains: &GainSet,
-        settings: &Settings,
+        options: &RunOptions,
         done: &(dyn Fn(u32) + Sync),
     ) -> Option<GpuError> {
         let start = Instant::now();
-        let mut flyer = match GpuFlyer::new(gpu, campaign, &gains.loops(), settings.tuning) {
+        let mut flyer = match GpuSimulator::new(gpu, campaign, &gains.loops(), options.tuning) {
             Ok(flyer) => flyer,
             Err(error) => return Some(error),
         };
@@ -276,7 +276,7 @@ impl Flight {
         let seen = &enough;
         // The tables take in a batch while the next one flies; at most one waits, so memory stays small.
         std::thread::scope(|scope| {
-            let (sender, batches) = mpsc::sync_channel::<Vec<Flown>>(1);
+            let (sender, batches) = mpsc::sync_channel::<Vec<EpisodeResult>>(1);
             let filling = scope.spawn(move || {
                 let mut spent_s = 0.0;
                 for batch in batches {
@@ -305,7 +305,7 @@ impl Flight {
         // What was flown beyond the end is in no table.
         let episodes = self.recorded();
         if episodes > 0 {
-            self.legs.push(Leg {
+            self.legs.push(Segment {
                 first: 0,
                 episodes,
                 engine: Engine::Gpu {
@@ -323,7 +323,7 @@ impl Flight {
         &mut self,
         campaign: &Campaign,
         gains: &GainSet,
-        settings: &Settings,
+        options: &RunOptions,
         done: &(dyn Fn(u32) + Sync),
     ) {
         let first = self.episodes();
@@ -331,7 +331,7 @@ impl Flight {
             return;
         }
         let start = Instant::now();
-        let cpu = Cpu::new(campaign, &gains.loops(), settings.precision, settings.simd);
+        let cpu = Cpu::new(campaign, &gains.loops(), options.precision, options.simd);
         self.times.loop_s += start.elapsed().as_secs_f64();
         let batch = match &campaign.stop {
             None => CPU_BATCH,
@@ -347,7 +347,7 @@ impl Flight {
             self.times.statistics_s += fill(&mut self.tables, &mut self.watch, campaign, &flown);
             next = until;
         }
-        self.legs.push(Leg {
+        self.legs.push(Segment {
             first,
             episodes: self.recorded() - first,
             engine: Engine::Cpu {
@@ -359,7 +359,12 @@ impl Flight {
 }
 
 /// Adds flown episodes to the tables, until the watch has seen enough; the time that it took, s.
-fn fill(tables: &mut Tables, watch: &mut Watch, campaign: &Campaign, flown: &[Flown]) -> f64 {
+fn fill(
+    tables: &mut Tables,
+    watch: &mut StoppingRule,
+    campaign: &Campaign,
+    flown: &[EpisodeResult],
+) -> f64 {
     let start = Instant::now();
     for episode in flown {
         if watch.is_done() {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// Counts the failures of a run's controller and says when enough is known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Watch {
+pub struct StoppingRule {
     stop: Option<Stop>,
     episodes: u64,
     failures: u64,
@@ -80,7 +80,7 @@ impl Stop {
     }
 }
 
-impl Watch {
+impl StoppingRule {
     /// A watch over the episodes of a campaign, from the first on.
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {

@@ -23,12 +23,12 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use urts_mc::backend::cpu::Precision;
-use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning, Wanted, adapters};
+use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning, Wanted, adapters};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 use urts_mc::model::episode::Model;
 use urts_mc::reference::Reference;
-use urts_mc::simulation::{Settings, fly};
+use urts_mc::simulation::{RunOptions, fly};
 
 /// Floating-point operations per UAV-step, counted on the hand-written programs.
 const FLOP: [(&str, f64); 2] = [("ftc", 3640.0), ("pid", 2344.0)];
@@ -105,8 +105,8 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
     for &episodes in sizes {
         let mut campaign = campaign.clone();
         campaign.episodes = episodes;
-        let gains = GainSet::obtain(&campaign).expect("the paper's gains exist");
-        let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains.loops(), Tuning::default())
+        let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
+        let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains.loops(), Tuning::default())
             .expect("the campaign fits the adapter");
         let mut first = 0;
         while first < episodes {
@@ -134,8 +134,8 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
 fn outside_the_loop(campaign: &Campaign) {
     let mut campaign = campaign.clone();
     campaign.episodes = 1000;
-    let gains = GainSet::obtain(&campaign).expect("the paper's gains exist");
-    let settings = Settings::cpu(Precision::F32);
+    let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
+    let settings = RunOptions::cpu(Precision::F32);
     let start = Instant::now();
     let flight = fly(&campaign, &gains, &settings, None, &|_| ()).expect("threads");
     let total = start.elapsed().as_secs_f64();

@@ -6,9 +6,9 @@ use super::loops::{nothing, sized};
 use super::signals::begin;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::uniforms::{LegPlantWords, UavWords};
+use crate::backend::gpu::uniforms::{LegPlantUniforms, UavUniforms};
 use crate::model::episode::PlantKind;
-use crate::model::exogenous::Signals;
+use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::delay_line::Actuator;
 
 /// Who an invocation is, and its words of the buffers.
@@ -81,11 +81,11 @@ pub(super) fn constants<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
 ) -> Compared {
     let bytes = world.plant.bytes();
     let taken: [(&str, [f32; NC]); 3] = if world.shape.plant == PlantKind::Leg {
-        let leg: LegPlantWords = bytemuck::pod_read_unaligned(&bytes);
+        let leg: LegPlantUniforms = bytemuck::pod_read_unaligned(&bytes);
         let max_torque = std::array::from_fn(|c| leg.max_torque[c]);
         [("max_torque", max_torque); 3]
     } else {
-        let uav: UavWords = bytemuck::pod_read_unaligned(&bytes);
+        let uav: UavUniforms = bytemuck::pod_read_unaligned(&bytes);
         let attitude = |of: [f32; 4]| {
             let axis = |c| (world.first + c) % 3;
             std::array::from_fn(|c| if NC == 1 { 0.0 } else { of[axis(c)] })
@@ -109,7 +109,7 @@ pub(super) fn constants<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
 }
 
 /// What signals know of the step before the one that is held next.
-fn forget<const NC: usize>(signals: &mut Signals<Tracked, NC>) {
+fn forget<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>) {
     let none = Tracked::exact(0.0);
     signals.actuator = Actuator::sound();
     for ring in &mut signals.command_rings {

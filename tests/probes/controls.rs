@@ -360,8 +360,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "group",
-        "stage > 0u || !signals_ticks(step)",
-        "!signals_ticks(step)",
+        "stage > 0u || !exogenous_inputs_ticks(step)",
+        "!exogenous_inputs_ticks(step)",
         "agent_seen",
     ),
     control(
@@ -384,8 +384,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "group",
-        "signals_remember(step, response.wanted, agent_motion",
-        "signals_remember(step, response.command, agent_motion",
+        "exogenous_inputs_remember(step, response.wanted, agent_motion",
+        "exogenous_inputs_remember(step, response.command, agent_motion",
         "agent_remember",
     ),
     control(

@@ -354,7 +354,7 @@ pub(super) fn advanced<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
 ) -> Compared {
     let body = "
         load();
-        signals_begin(span.first);
+        exogenous_inputs_begin(span.first);
         group_hold(span.first);
         group_advance();";
     let stride = world.shape.table_rows();

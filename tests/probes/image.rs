@@ -6,7 +6,7 @@ use super::tracked::Tracked;
 use crate::backend::gpu::signals::{Lists, waves};
 use crate::model::agent::Agent;
 use crate::model::controller::FTC_STATES;
-use crate::model::exogenous::delay_line::Ring;
+use crate::model::exogenous::delay_line::DelayLine;
 use crate::model::metric::Sums;
 
 /// Words of the image that every shape has, before its waves and rings.
@@ -101,7 +101,7 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words
 }
 
-/// The words of an agent's channel in the state buffer, in the order of `Words::named`, and of each whether it is there all the
+/// The words of an agent's channel in the state buffer, in the order of `Layout::named`, and of each whether it is there all the
 /// time, and not only between two spans.
 pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
     agent: &Agent<Tracked, NC, NS, NX>,
@@ -111,7 +111,7 @@ pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
     use Expected::Near;
     let image = image(agent, c, Expected::Any);
     let signals = &agent.signals;
-    // Of the verdict and the extremes; see `Words::named`.
+    // Of the verdict and the extremes; see `Layout::named`.
     let mut kept = vec![image[51], image[49], image[50], image[47], image[48]];
     kept.extend(&image[41..47]);
     let totals = sums(&agent.metrics[c].total).map(Near);
@@ -156,7 +156,7 @@ pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
 
 /// The samples of a channel's ring, signal by signal; places beyond its length stay as they were, at zero.
 fn ring_samples<const NC: usize, const NV: usize>(
-    ring: &Ring<Tracked, NC, NV>,
+    ring: &DelayLine<Tracked, NC, NV>,
     c: usize,
     places: usize,
 ) -> Vec<Expected> {

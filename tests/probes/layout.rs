@@ -8,7 +8,9 @@ use crate::backend::gpu::layout;
 use crate::backend::gpu::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span};
 use crate::backend::gpu::pipeline::{BINDINGS, ENTRIES};
 use crate::backend::gpu::shape::Shape;
-use crate::backend::gpu::uniforms::{GainsWords, LegPlantWords, SettingHead, UavWords, setting};
+use crate::backend::gpu::uniforms::{
+    GainsUniforms, LegPlantUniforms, SettingHead, UavUniforms, setting,
+};
 use crate::campaign::Campaign;
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
@@ -16,7 +18,7 @@ use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
-use crate::model::plant::leg::LegWords;
+use crate::model::plant::leg::LegUniforms;
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
 use crate::random::philox;
 use crate::random::philox::Stream;
@@ -94,24 +96,24 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
             assert_eq!(
                 layout(&module, "Leg"),
                 (
-                    offsets!(LegPlantWords: model, max_torque),
-                    size_of::<LegPlantWords>()
+                    offsets!(LegPlantUniforms: model, max_torque),
+                    size_of::<LegPlantUniforms>()
                 )
             );
-            assert_eq!(layout(&module, "LegModel").1, size_of::<LegWords>());
-            size_of::<LegPlantWords>()
+            assert_eq!(layout(&module, "LegModel").1, size_of::<LegUniforms>());
+            size_of::<LegPlantUniforms>()
         } else {
-            let mut expected = offsets!(UavWords: mass, inverse_mass, drag, gravity, inertia, inverse_inertia, gyro, angular_drag, filter_rad_s, max_thrust, max_torque, max_tilt);
-            let unused = offset_of!(UavWords, unused);
+            let mut expected = offsets!(UavUniforms: mass, inverse_mass, drag, gravity, inertia, inverse_inertia, gyro, angular_drag, filter_rad_s, max_thrust, max_torque, max_tilt);
+            let unused = offset_of!(UavUniforms, unused);
             expected.extend((0..3).map(|k| (format!("unused_{k}"), unused + 4 * k)));
-            assert_eq!(layout(&module, "Uav"), (expected, size_of::<UavWords>()));
-            size_of::<UavWords>()
+            assert_eq!(layout(&module, "Uav"), (expected, size_of::<UavUniforms>()));
+            size_of::<UavUniforms>()
         };
         assert_eq!(
             layout(&module, "ChannelGains"),
             (
-                offsets!(GainsWords: feedback, injection, smoothing, sensor_fault_input),
-                size_of::<GainsWords>()
+                offsets!(GainsUniforms: feedback, injection, smoothing, sensor_fault_input),
+                size_of::<GainsUniforms>()
             )
         );
         // Words of the setting's step, in this order.
@@ -129,15 +131,15 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
         expected.push(("plant".to_string(), plant));
         expected.push(("limits".to_string(), head));
         expected.push(("gains".to_string(), head + limits));
-        let span = head + limits + shape.kinds() * size_of::<GainsWords>();
-        assert_eq!(layout(&module, "Setting"), (expected, span));
+        let span = head + limits + shape.kinds() * size_of::<GainsUniforms>();
+        assert_eq!(layout(&module, "Uniforms"), (expected, span));
         // Arrays of the setting: an element follows the other without a gap.
         for (ty, stride) in module.types.iter().filter_map(|(_, ty)| match ty.inner {
             TypeInner::Array { base, stride, .. } => Some((base, stride as usize)),
             _ => None,
         }) {
             if module.types[ty].name.as_deref() == Some("ChannelGains") {
-                assert_eq!(stride, size_of::<GainsWords>());
+                assert_eq!(stride, size_of::<GainsUniforms>());
             }
         }
     }
@@ -163,7 +165,7 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         for part in &model.parts {
             let mut shapes = shapes::validated().into_iter();
             let shape = shapes.find(|shape| shape.plant == part.plant).unwrap();
-            let (_, span) = layout(&module(&shape), "Setting");
+            let (_, span) = layout(&module(&shape), "Uniforms");
             assert_eq!(setting(&campaign, part, &controller).len(), span);
             plants += 1;
         }
@@ -174,7 +176,7 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
     );
     assert_eq!(
         world.bytes().len(),
-        layout(&module(&world.shape), "Setting").1
+        layout(&module(&world.shape), "Uniforms").1
     );
 }
 
@@ -301,7 +303,7 @@ fn val_constants_are_those_of_rust() {
             ("MULTIPLIERS", philox::MULTIPLIERS.to_vec()),
             ("WEYL", philox::WEYL.to_vec()),
             ("STREAM_NOISE", count(Stream::Noise as usize)),
-            ("STREAM_BURST", count(Stream::Burst as usize)),
+            ("STREAM_BURST", count(Stream::IntermittentWindow as usize)),
             ("STREAM_TURBULENCE", count(Stream::Turbulence as usize)),
             ("MEMBERS_PER_AGENT", count(MEMBERS_PER_AGENT)),
             ("UNIT_SPACING", number(math::UNIT_SPACING)),

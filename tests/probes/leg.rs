@@ -8,8 +8,8 @@ use super::tracked::Tracked;
 use super::world::World;
 use crate::backend::gpu::shape::Shape;
 use crate::model::lanes::Lane;
-use crate::model::plant::biped::{Leg, matrix_row, plus_product};
-use crate::model::plant::leg::{LEG_JOINTS, LegJoint, LegModel, LegWords, forward_dynamics};
+use crate::model::plant::biped::{LegPlant, matrix_row, plus_product};
+use crate::model::plant::leg::{LEG_JOINTS, LegJoint, LegModel, LegUniforms, forward_dynamics};
 use std::path::Path;
 
 const PROBE: &str = "
@@ -47,7 +47,7 @@ fn text(constants: &[(String, u32)]) -> String {
 /// A joint's row of a matrix, and its product with what the joints have published.
 pub(super) fn matrix_rows<const CUT: bool, const NS: usize>(
     lab: &Lab,
-    world: &World<Leg<f32, CUT>, 6, NS, 0>,
+    world: &World<LegPlant<f32, CUT>, 6, NS, 0>,
 ) -> Compared {
     let body = "
         load();
@@ -80,7 +80,7 @@ pub(super) fn matrix_rows<const CUT: bool, const NS: usize>(
 /// The forward dynamics: every invocation has a leg of its own here.
 pub(super) fn dynamics<const CUT: bool, const NS: usize>(
     lab: &Lab,
-    world: &World<Leg<f32, CUT>, 6, NS, 0>,
+    world: &World<LegPlant<f32, CUT>, 6, NS, 0>,
 ) -> Compared {
     let body = "
         load();
@@ -167,7 +167,7 @@ fn largest_error(lab: &Lab, name: &str, leg: usize, any: bool, edit: fn(String) 
         .map(|&x| x as f32)
         .collect();
     let blank = vec![BLANK; 6 * cases.len()];
-    let words = LegWords::from(&single);
+    let words = LegUniforms::from(&single);
     let contents = [
         bytemuck::bytes_of(&words),
         &[0; 16],
@@ -240,6 +240,9 @@ fn val_the_leg_is_valid_and_lies_in_memory_as_its_twin_does() {
             .iter()
             .find(|(_, own)| own.name.as_deref() == Some("LegModel"))
             .map(|(_, own)| own.inner.size(module.to_ctx()));
-        assert_eq!(span.map(|span| span as usize), Some(size_of::<LegWords>()));
+        assert_eq!(
+            span.map(|span| span as usize),
+            Some(size_of::<LegUniforms>())
+        );
     }
 }

@@ -25,9 +25,9 @@ pub(super) fn switched<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
     let body = "
         load();
         for (var k = 0u; k < N_SWITCHES; k++) {
-            answer_number(3u * k, switch_weight(k, step));
-            answer_number(3u * k + 1u, switch_value(k));
-            answer_number(3u * k + 2u, switch_at(k, step));
+            answer_number(3u * k, window_weight(k, step));
+            answer_number(3u * k + 1u, window_value(k));
+            answer_number(3u * k + 2u, window_at(k, step));
         }
         answer(3u * N_SWITCHES, next_change(step));";
     let count = 3 * world.shape.lists.switches() + 1;
@@ -53,7 +53,7 @@ pub(super) fn burst<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     let body = "
         load();
         for (var k = INTERMITTENTS; k < SINES; k++) {
-            let burst = burst_at(k, step);
+            let burst = intermittent_window_at(k, step);
             answer_number(2u * (k - INTERMITTENTS), burst.x);
             answer_number(2u * (k - INTERMITTENTS) + 1u, burst.y);
         }
@@ -92,7 +92,7 @@ pub(super) fn rings_held<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
 ) -> Compared {
     let body = "
         load();
-        for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) { ring_hold(k, step); }";
+        for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) { delay_line_hold(k, step); }";
     world.check(lab, body, 0, nothing, |scene| {
         let step = scene.step;
         scene.each(|scene, a, c| {
@@ -117,8 +117,8 @@ pub(super) fn rings_played<P: Flies<NC, NX>, const NC: usize, const NS: usize, c
         for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) {
             let second = select(0.0, 1.0, k >= N_COMMAND_RINGS);
             let now = vec2(number(0u), number(1u) * second);
-            let recalled = ring_recall(k, (stage + 1u) / 2u, now);
-            let either = ring_or_past(k, now, vec2(number(2u), number(3u) * second));
+            let recalled = delay_line_recall(k, (stage + 1u) / 2u, now);
+            let either = delay_line_or_past(k, now, vec2(number(2u), number(3u) * second));
             answer_number(4u * k, recalled.x);
             answer_number(4u * k + 1u, recalled.y);
             answer_number(4u * k + 2u, either.x);
@@ -159,7 +159,7 @@ pub(super) fn rings_recorded<
     let body = "
         load();
         for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) {
-            ring_record(k, step, vec2(number(0u), number(1u)));
+            delay_line_record(k, step, vec2(number(0u), number(1u)));
         }";
     world.check(lab, body, 0, sized([1.0; 2]), |scene| {
         let step = scene.step;
@@ -184,8 +184,8 @@ pub(super) fn rings_read<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
     let body = "
         load();
         for (var k = 0u; k < N_COMMAND_RINGS + N_SENSOR_RINGS; k++) {
-            let read = ring_read(k, asked(0u));
-            answer(3u * k, ring_place(k, asked(0u)));
+            let read = delay_line_read(k, asked(0u));
+            answer(3u * k, delay_line_place(k, asked(0u)));
             answer_number(3u * k + 1u, read.x);
             answer_number(3u * k + 2u, read.y);
         }";

@@ -82,7 +82,7 @@ fn load() {
     outside_before_fault = bitcast<i32>(taken(50u));
     own.failed = taken(51u);
     own.next_change = taken(52u);
-    signals_begin(0u);
+    exogenous_inputs_begin(0u);
     held_disturbance = taken_number(53u);
     scale = taken_number(54u);
     frozen = taken_number(55u);

@@ -8,7 +8,7 @@ use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::signals::{LISTS, Lists};
 use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;
-use crate::model::plant::biped::Leg;
+use crate::model::plant::biped::LegPlant;
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
 
@@ -217,14 +217,14 @@ pub(super) fn thrust() -> Thrust<f32> {
 
 /// A right leg with damped joints, whose limits are met by some of the random states. Its rotors are heavy, so that no joint
 /// moves far more than the others, in which rounding errors would drown it.
-pub(super) fn leg<const CUT: bool>() -> Leg<f32, CUT> {
+pub(super) fn leg<const CUT: bool>() -> LegPlant<f32, CUT> {
     let mut robot = robot("g1_12dof");
     for (j, joint) in (0_u8..).zip(&mut robot.legs[1].joints) {
         joint.damping_n_m_s = 0.3 + 0.1 * f64::from(j);
         joint.armature_kg_m2 = 2.0 - 0.2 * f64::from(j);
         joint.torque_max_n_m = 3.0 + f64::from(j);
     }
-    Leg::new(&robot, 1)
+    LegPlant::new(&robot, 1)
 }
 
 /// A robot that is shipped.

@@ -9,13 +9,13 @@ use super::world::{Flies, Scene, World, episode};
 use crate::backend::gpu::layout::NEVER;
 use crate::backend::gpu::signals::{switches, waves};
 use crate::model::exogenous::delay_line::Actuator;
-use crate::model::exogenous::{Signals, Wave, turned};
+use crate::model::exogenous::{ExogenousInputs, Oscillation, turned};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::model::metric::Sample;
 
 /// The first step after `step` at which a switch of a channel turns.
 pub(super) fn next_change<const NC: usize>(
-    signals: &Signals<Tracked, NC>,
+    signals: &ExogenousInputs<Tracked, NC>,
     c: usize,
     step: u32,
 ) -> u32 {
@@ -31,8 +31,8 @@ pub(super) fn next_change<const NC: usize>(
 
 /// All waves, as `lists::waves` lists them.
 fn waves_mut<const NC: usize>(
-    signals: &mut Signals<Tracked, NC>,
-) -> impl Iterator<Item = &mut [Wave<Tracked>; NC]> {
+    signals: &mut ExogenousInputs<Tracked, NC>,
+) -> impl Iterator<Item = &mut [Oscillation<Tracked>; NC]> {
     let lists = [
         &mut signals.sines,
         &mut signals.gusts,
@@ -44,7 +44,7 @@ fn waves_mut<const NC: usize>(
 }
 
 /// Moves the phases of an agent's signals to the start of a step, half step by half step.
-pub(super) fn begin<const NC: usize>(signals: &mut Signals<Tracked, NC>, step: u32) {
+pub(super) fn begin<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, step: u32) {
     for wave in waves_mut(signals).flatten() {
         for _ in 0..2 * step {
             wave.phase = Tracked::turns_add(wave.phase, wave.advance);
@@ -58,10 +58,10 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
 ) -> Compared {
     let body = "
         load();
-        signals_begin(step);
+        exogenous_inputs_begin(step);
         answer_number(0u, constant);
         answer_number(1u, ground);
-        answer(2u, select(0u, 1u, signals_ticks(step)));
+        answer(2u, select(0u, 1u, exogenous_inputs_ticks(step)));
         for (var k = 0u; k < N_WAVES; k++) {
             answer_number(3u + 2u * k, waves[k].inverse_smoothing);
             answer(4u + 2u * k, waves[k].advance);
@@ -106,7 +106,7 @@ pub(super) fn held<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); signals_hold(step, number(0u));";
+    let body = "load(); exogenous_inputs_hold(step, number(0u));";
     world.check(lab, body, 0, sized([3.0]), |scene| {
         let (step, episodes) = (scene.step, episodes(scene.index));
         for a in 0..world.shape.team {
@@ -146,7 +146,7 @@ pub(super) fn evaluated<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); signals_evaluate(step, (stage + 1u) / 2u);";
+    let body = "load(); exogenous_inputs_evaluate(step, (stage + 1u) / 2u);";
     world.check(lab, body, 0, nothing, |scene| {
         let (step, moment) = (scene.step, moment(scene.stage));
         for agent in &mut scene.group.agents {
@@ -161,7 +161,7 @@ pub(super) fn turns<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
 ) -> Compared {
     let body = "
         load();
-        for (var k = 0u; k < N_WAVES; k++) { answer_number(k, wave_turned(k, stage % 2u == 1u)); }";
+        for (var k = 0u; k < N_WAVES; k++) { answer_number(k, oscillation_turned(k, stage % 2u == 1u)); }";
     let [_, count, _] = world.shape.lists.groups();
     world.check(lab, body, count, nothing, |scene| {
         let advance = scene.stage % 2 == 1;
@@ -219,7 +219,7 @@ pub(super) fn remembered<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
 ) -> Compared {
     let body = "
         load();
-        signals_remember(step, number(0u), vec2(number(1u), number(2u)));";
+        exogenous_inputs_remember(step, number(0u), vec2(number(1u), number(2u)));";
     world.check(lab, body, 0, sized([3.0, 1.0, 2.0]), |scene| {
         let step = scene.step;
         scene.each(|scene, a, c| {

@@ -7,12 +7,12 @@ use super::world::{Flies, World};
 use crate::backend::gpu::signals::{LISTS, Lists};
 use crate::draw::member;
 use crate::model::agent::Agent;
-use crate::model::exogenous::delay_line::Ring;
+use crate::model::exogenous::delay_line::DelayLine;
 use crate::model::exogenous::noise::{Filter, Noise, Turbulence};
 use crate::model::exogenous::vortex::Vortex;
-use crate::model::exogenous::window::{Burst, Switch};
-use crate::model::exogenous::{Signals, Wave};
-use crate::model::inputs::Condition;
+use crate::model::exogenous::window::{IntermittentWindow, Window};
+use crate::model::exogenous::{ExogenousInputs, Oscillation};
+use crate::model::inputs::ChannelInputs;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::model::metric::Sums;
 
@@ -41,7 +41,7 @@ impl Random<'_> {
 
     /// When something is there: around the scene's step, and in the world's span. A ramp's middle is never met by a hair: the
     /// numbers of steps are odd.
-    fn switch<L: Lane<Real = f32>>(&mut self, low: f64, high: f64) -> Switch<L> {
+    fn switch<L: Lane<Real = f32>>(&mut self, low: f64, high: f64) -> Window<L> {
         let now = f64::from(self.step);
         let onsets = [0.0, now, now + 1.0, 254.0, 256.0, f64::INFINITY];
         let never = f64::INFINITY;
@@ -51,7 +51,7 @@ impl Random<'_> {
         } else {
             &[1.0]
         };
-        Switch {
+        Window {
             onset: L::number(self.numbers.one_of(&onsets)),
             end: L::number(self.numbers.one_of(&ends)),
             inverse_ramp: L::number(1.0 / self.numbers.one_of(ramps)),
@@ -63,7 +63,7 @@ impl Random<'_> {
         &mut self,
         low: f64,
         high: f64,
-    ) -> [Switch<L>; NC] {
+    ) -> [Window<L>; NC] {
         std::array::from_fn(|_| self.switch(low, high))
     }
 
@@ -72,7 +72,7 @@ impl Random<'_> {
         list: &str,
         low: f64,
         high: f64,
-    ) -> Vec<[Switch<L>; NC]> {
+    ) -> Vec<[Window<L>; NC]> {
         (0..self.count(list))
             .map(|_| self.switches(low, high))
             .collect()
@@ -83,12 +83,12 @@ impl Random<'_> {
         list: &str,
         low: f64,
         high: f64,
-    ) -> Vec<Burst<L, NC>> {
+    ) -> Vec<IntermittentWindow<L, NC>> {
         let count = self.count(list);
         let bursts = (0..count).map(|_| {
             let (entry, together) = self.lists.bursts[self.bursts];
             self.bursts += 1;
-            Burst {
+            IntermittentWindow {
                 entry,
                 together,
                 members: std::array::from_fn(|c| {
@@ -103,9 +103,12 @@ impl Random<'_> {
         bursts.collect()
     }
 
-    fn waves<L: Lane<Real = f32>, const NC: usize>(&mut self, list: &str) -> Vec<[Wave<L>; NC]> {
+    fn waves<L: Lane<Real = f32>, const NC: usize>(
+        &mut self,
+        list: &str,
+    ) -> Vec<[Oscillation<L>; NC]> {
         let count = self.count(list);
-        let mut wave = || Wave {
+        let mut wave = || Oscillation {
             switch: self.switch(-1.0, 1.0),
             inverse_smoothing: L::number(self.numbers.between(1.0, 50.0)),
             phase: L::turns_from_words(&[self.numbers.word()]),
@@ -120,14 +123,14 @@ impl Random<'_> {
     fn ring<L: Lane<Real = f32>, const NC: usize, const NV: usize>(
         &mut self,
         list: &str,
-    ) -> Vec<Ring<L, NC, NV>> {
+    ) -> Vec<DelayLine<L, NC, NV>> {
         let count = self.count(list);
         let lengths: [u32; RING_STEPS] = std::array::from_fn(|k| k as u32 + 1);
         let rings = (0..count).map(|_| {
             let records = self.lists.rings[self.rings];
             self.rings += 1;
             let length = std::array::from_fn(|_| [self.numbers.one_of(&lengths); MAX_WIDTH]);
-            Ring::new(records, self.switches(1.0, 1.0), length)
+            DelayLine::new(records, self.switches(1.0, 1.0), length)
         });
         rings.collect()
     }
@@ -169,7 +172,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         &self,
         scene: usize,
         agent: usize,
-    ) -> Condition<L, NC> {
+    ) -> ChannelInputs<L, NC> {
         let lists = &self.shape.lists;
         let mut random = Random {
             numbers: Numbers::new(CONDITION, scene, agent),
@@ -180,7 +183,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             bursts: 0,
             rings: 0,
         };
-        let mut signals = Signals::none();
+        let mut signals = ExogenousInputs::none();
         signals.hold_steps = lists.hold_steps;
         signals.rises = lists.restless;
         signals.losses = random.plain("LOSSES", 0.0, 0.9);
@@ -216,7 +219,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             *lists,
             "the flags are those of the model"
         );
-        Condition {
+        ChannelInputs {
             initial: std::array::from_fn(|_| std::array::from_fn(|_| some(-1.0, 1.0))),
             signals,
             kappa: some(-0.1, 0.1),
@@ -286,7 +289,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
 }
 
 /// What an agent's signals hold and remember.
-fn remembered<const NC: usize>(signals: &mut Signals<Tracked, NC>, numbers: &mut Numbers) {
+fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbers: &mut Numbers) {
     let mut some = |size: f64| Tracked::number(numbers.around(size));
     for held in [
         &mut signals.held_disturbance,
@@ -347,7 +350,10 @@ fn remembered<const NC: usize>(signals: &mut Signals<Tracked, NC>, numbers: &mut
 }
 
 /// Fills a ring with samples.
-fn fill<const NC: usize, const NV: usize>(ring: &mut Ring<Tracked, NC, NV>, numbers: &mut Numbers) {
+fn fill<const NC: usize, const NV: usize>(
+    ring: &mut DelayLine<Tracked, NC, NV>,
+    numbers: &mut Numbers,
+) {
     for c in 0..NC {
         ring.plays[c] = Tracked::exact(0.0);
         for place in 0..ring.length[c][0] {

@@ -221,12 +221,12 @@ pub(super) const LOOPS: &[Probe] = &[
 pub(super) const MEMORY: &[Probe] = &[
     probe!(
         "switches",
-        ["switch_weight", "switch_value", "switch_at", "next_change"],
+        ["window_weight", "window_value", "window_at", "next_change"],
         over_shapes!(memory::switched)
     ),
     probe!(
         "bursts",
-        ["burst_at", "own_member"],
+        ["intermittent_window_at", "own_member"],
         over_shapes!(memory::burst)
     ),
     probe!(
@@ -234,20 +234,24 @@ pub(super) const MEMORY: &[Probe] = &[
         ["actuator_command"],
         over_shapes!(memory::actuators)
     ),
-    probe!("ring_hold", ["ring_hold"], over_shapes!(memory::rings_held)),
     probe!(
-        "ring_recall",
-        ["ring_recall", "ring_or_past"],
+        "delay_line_hold",
+        ["delay_line_hold"],
+        over_shapes!(memory::rings_held)
+    ),
+    probe!(
+        "delay_line_recall",
+        ["delay_line_recall", "delay_line_or_past"],
         over_shapes!(memory::rings_played)
     ),
     probe!(
-        "ring_record",
-        ["ring_record"],
+        "delay_line_record",
+        ["delay_line_record"],
         over_shapes!(memory::rings_recorded)
     ),
     probe!(
-        "ring_read",
-        ["ring_read", "ring_place"],
+        "delay_line_read",
+        ["delay_line_read", "delay_line_place"],
         over_shapes!(memory::rings_read)
     ),
     probe!("normal_pair", ["normal_pair"], pairs),
@@ -266,13 +270,13 @@ pub(super) const MEMORY: &[Probe] = &[
 /// What acts on a channel, and what is kept of it.
 pub(super) const SIGNALS: &[Probe] = &[
     probe!(
-        "signals_begin",
-        ["signals_begin", "signals_ticks"],
+        "exogenous_inputs_begin",
+        ["exogenous_inputs_begin", "exogenous_inputs_ticks"],
         over_shapes!(signals::begun)
     ),
     probe!(
-        "signals_hold",
-        ["signals_hold"],
+        "exogenous_inputs_hold",
+        ["exogenous_inputs_hold"],
         over_shapes!(signals::held)
     ),
     probe!(
@@ -281,11 +285,15 @@ pub(super) const SIGNALS: &[Probe] = &[
         over_shapes!(signals::held_apart)
     ),
     probe!(
-        "signals_evaluate",
-        ["signals_evaluate"],
+        "exogenous_inputs_evaluate",
+        ["exogenous_inputs_evaluate"],
         over_shapes!(signals::evaluated)
     ),
-    probe!("wave_turned", ["wave_turned"], over_shapes!(signals::turns)),
+    probe!(
+        "oscillation_turned",
+        ["oscillation_turned"],
+        over_shapes!(signals::turns)
+    ),
     probe!(
         "commands",
         ["carry_command", "limit_rate"],
@@ -293,8 +301,8 @@ pub(super) const SIGNALS: &[Probe] = &[
     ),
     probe!("measure", ["measure"], over_shapes!(signals::measured)),
     probe!(
-        "signals_remember",
-        ["signals_remember", "remember_command"],
+        "exogenous_inputs_remember",
+        ["exogenous_inputs_remember", "remember_command"],
         over_shapes!(signals::remembered)
     ),
     probe!(

@@ -129,9 +129,9 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         "window",
         include_str!("../../src/model/exogenous/window.rs"),
         &[
-            ("weight", "switch_weight"),
-            ("at", "switch_at"),
-            ("at", "burst_at"),
+            ("weight", "window_weight"),
+            ("at", "window_at"),
+            ("at", "intermittent_window_at"),
         ],
     ),
     (
@@ -139,12 +139,12 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         include_str!("../../src/model/exogenous/delay_line.rs"),
         &[
             ("command", "actuator_command"),
-            ("hold", "ring_hold"),
-            ("recall", "ring_recall"),
-            ("or_past", "ring_or_past"),
-            ("record", "ring_record"),
-            ("read", "ring_read"),
-            ("place", "ring_place"),
+            ("hold", "delay_line_hold"),
+            ("recall", "delay_line_recall"),
+            ("or_past", "delay_line_or_past"),
+            ("record", "delay_line_record"),
+            ("read", "delay_line_read"),
+            ("place", "delay_line_place"),
         ],
     ),
     (
@@ -161,13 +161,13 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         "exogenous",
         include_str!("../../src/model/exogenous/mod.rs"),
         &[
-            ("ticks", "signals_ticks"),
-            ("hold", "signals_hold"),
+            ("ticks", "exogenous_inputs_ticks"),
+            ("hold", "exogenous_inputs_hold"),
             ("hold_sensor", "hold_sensor"),
-            ("evaluate", "signals_evaluate"),
+            ("evaluate", "exogenous_inputs_evaluate"),
             ("measure", "measure"),
-            ("remember", "signals_remember"),
-            ("turned", "wave_turned"),
+            ("remember", "exogenous_inputs_remember"),
+            ("turned", "oscillation_turned"),
         ],
     ),
     (
@@ -321,11 +321,14 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["next_change"], "the model's list of changes"),
     (
-        &["switch_value", "turbulence_filter", "vortex_drawn"],
+        &["window_value", "turbulence_filter", "vortex_drawn"],
         "fields",
     ),
     (&["own_member"], "the address that the host gives a channel"),
-    (&["signals_begin"], "as many turns_add as half steps"),
+    (
+        &["exogenous_inputs_begin"],
+        "as many turns_add as half steps",
+    ),
     (&["add_to_total"], "a line of flush"),
     (
         &[

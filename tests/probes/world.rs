@@ -8,15 +8,15 @@ use super::tracked::Tracked;
 use crate::backend::gpu::layout;
 use crate::backend::gpu::layout::{NEVER, Span};
 use crate::backend::gpu::shape::Shape;
-use crate::backend::gpu::uniforms::{GainsWords, PlantWords, SettingHead};
-use crate::model::agent::Setting;
+use crate::backend::gpu::uniforms::{GainsUniforms, PlantUniforms, SettingHead};
+use crate::model::agent::GroupParameters;
 use crate::model::controller::ChannelGains;
 use crate::model::episode::PlantKind;
 use crate::model::integrator::Step;
 use crate::model::lanes::MAX_WIDTH;
 use crate::model::metric::Limits;
 use crate::model::plant::{Plant, ReferenceRow};
-use crate::model::team::Group;
+use crate::model::team::TeamState;
 use crate::random::philox::key;
 
 /// The fewest invocations of a probe.
@@ -27,11 +27,14 @@ const INPUT: u32 = 4;
 
 /// A plant that worlds are made of.
 pub(super) trait Flies<const NC: usize, const NX: usize>:
-    Plant<Tracked, NC, NX> + PlantWords
+    Plant<Tracked, NC, NX> + PlantUniforms
 {
 }
 
-impl<P: Plant<Tracked, NC, NX> + PlantWords, const NC: usize, const NX: usize> Flies<NC, NX> for P {}
+impl<P: Plant<Tracked, NC, NX> + PlantUniforms, const NC: usize, const NX: usize> Flies<NC, NX>
+    for P
+{
+}
 
 /// Scenes of one shape: a scene is a team in one episode.
 pub(super) struct World<P, const NC: usize, const NS: usize, const NX: usize> {
@@ -51,7 +54,7 @@ pub(super) struct World<P, const NC: usize, const NS: usize, const NX: usize> {
 
 /// One scene while a probe's twin acts on it.
 pub(super) struct Scene<const NC: usize, const NS: usize, const NX: usize> {
-    pub(super) group: Group<Tracked, NC, NS, NX>,
+    pub(super) group: TeamState<Tracked, NC, NS, NX>,
     /// Its number, counted through all workgroups.
     pub(super) index: usize,
     pub(super) stage: usize,
@@ -150,8 +153,11 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
     }
 
     /// Constants of the group, with a reference table.
-    pub(super) fn setting<'t>(&self, table: &'t [ReferenceRow<f32>]) -> Setting<'t, P, f32, NC> {
-        Setting {
+    pub(super) fn setting<'t>(
+        &self,
+        table: &'t [ReferenceRow<f32>],
+    ) -> GroupParameters<'t, P, f32, NC> {
+        GroupParameters {
             plant: self.plant,
             gains: self.gains,
             limits: self.limits,
@@ -164,7 +170,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         }
     }
 
-    /// The bytes of the shaders' `Setting`.
+    /// The bytes of the shaders' `GroupParameters`.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let h = Step::<f32>::new(self.step_s);
         let head = SettingHead {
@@ -180,7 +186,9 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             bytes.extend(bytemuck::bytes_of(&limits));
         }
         for kind in 0..self.shape.kinds() {
-            bytes.extend(bytemuck::bytes_of(&GainsWords::from(&self.gains[3 * kind])));
+            bytes.extend(bytemuck::bytes_of(&GainsUniforms::from(
+                &self.gains[3 * kind],
+            )));
         }
         bytes
     }
@@ -190,9 +198,9 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         scene as u32 * 7 % 1000
     }
 
-    fn scene(&self, scene: usize) -> Group<Tracked, NC, NS, NX> {
+    fn scene(&self, scene: usize) -> TeamState<Tracked, NC, NS, NX> {
         let agents = (0..self.shape.team).map(|agent| self.agent(scene, agent));
-        let mut group = Group::new(agents.collect(), [episode(scene); MAX_WIDTH], Vec::new());
+        let mut group = TeamState::new(agents.collect(), [episode(scene); MAX_WIDTH], Vec::new());
         group.step = Self::step(scene);
         group
     }

@@ -1,7 +1,7 @@
 //! What several test modules need.
 
 use std::path::{Path, PathBuf};
-use urts_mc::backend::Flown;
+use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, Wanted, adapters};
 use urts_mc::campaign::Campaign;
@@ -46,8 +46,8 @@ pub(crate) fn golden(name: &str) -> serde_json::Value {
 }
 
 /// Flies a campaign with its own gains on the widest lanes.
-pub(crate) fn fly(campaign: &Campaign, precision: Precision) -> Vec<Flown> {
-    let gains = GainSet::obtain(campaign).unwrap();
+pub(crate) fn fly(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     Cpu::new(campaign, &gains.loops(), precision, None).fly(0..campaign.episodes, &|_| ())
 }
 

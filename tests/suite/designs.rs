@@ -10,7 +10,7 @@ use urts_mc::results::{compare, comparison_table, summarise, summary_table, verd
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
-use urts_mc::simulation::Settings;
+use urts_mc::simulation::RunOptions;
 
 fn sampled(design: &str, replicates: u32, episodes: u32) -> Campaign {
     let text = format!("[sampling]\ndesign = \"{design}\"\nreplicates = {replicates}\n[verdict]");
@@ -345,8 +345,8 @@ fn the_replicate_is_a_column_and_an_episode_of_a_design_is_replayed() {
     let campaign = sampled("latin-hypercube", 8, 16);
     let dir = tempfile::tempdir().unwrap();
     let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
-    let settings = Settings::cpu(Precision::F32);
-    run(&campaign, &settings, &out, Extras::default(), &|_| ()).unwrap();
+    let options = RunOptions::cpu(Precision::F32);
+    run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
     let again = replay(out.path(), 11, "pid", None).unwrap();
     let scores = tables(&campaign, Precision::F32).scores;
     assert!(scores.holds(&campaign, 1, 11, &again.outcomes));

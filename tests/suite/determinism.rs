@@ -3,14 +3,14 @@
 
 use crate::common::{altered, campaign};
 use std::fs;
-use urts_mc::backend::Flown;
+use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
-use urts_mc::simulation::Settings;
+use urts_mc::simulation::RunOptions;
 
 /// Campaigns of UAVs and of robots with noise and every other kind of signal, short, and with a number of episodes that fills no
 /// block.
@@ -118,8 +118,8 @@ fn fly(
     simd: Option<Simd>,
     threads: usize,
     precision: Precision,
-) -> Vec<Flown> {
-    let gains = GainSet::obtain(campaign).unwrap();
+) -> Vec<EpisodeResult> {
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), precision, simd);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -138,10 +138,10 @@ fn files(
     let out = OutputDir::claim(&dir.path().join("run"), campaign, false).unwrap();
     run(
         campaign,
-        &Settings {
+        &RunOptions {
             simd,
             threads,
-            ..Settings::cpu(precision)
+            ..RunOptions::cpu(precision)
         },
         &out,
         Extras {
@@ -228,7 +228,7 @@ fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
 #[test]
 fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
     for campaign in everything() {
-        let gains = GainSet::obtain(&campaign).unwrap();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap();
         let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
         let all = cpu.fly(0..37, &|_| ());
         assert!(same(&cpu.fly(5..23, &|_| ())[..], &all[5..23]));
@@ -266,7 +266,7 @@ fn same_metrics(campaign: &Campaign) {
         let out = OutputDir::claim(&dir.path().join("run"), campaign, false).unwrap();
         run(
             campaign,
-            &Settings::cpu(precision),
+            &RunOptions::cpu(precision),
             &out,
             Extras::default(),
             &|_| (),
@@ -306,9 +306,9 @@ fn same_metrics(campaign: &Campaign) {
 #[test]
 fn the_result_of_the_smoke_campaign_does_not_depend_on_how_often_it_is_flown() {
     let campaign = campaign("smoke");
-    let settings = (2, None, Precision::F64);
+    let options = (2, None, Precision::F64);
     assert!(
-        files(&campaign, settings.0, settings.1, settings.2)
-            == files(&campaign, settings.0, settings.1, settings.2)
+        files(&campaign, options.0, options.1, options.2)
+            == files(&campaign, options.0, options.1, options.2)
     );
 }

@@ -13,7 +13,7 @@ use crate::common::repository;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 
 const STEP_S: f64 = 0.002;
 const MASS_KG: f64 = 2.0;
@@ -57,8 +57,8 @@ fn campaign(more: &str) -> Campaign {
 }
 
 /// What every agent and channel shows at every step, `[step][agent][channel]`.
-fn flight(campaign: &Campaign) -> Vec<Vec<Vec<Shown>>> {
-    let gains = GainSet::obtain(campaign).unwrap();
+fn flight(campaign: &Campaign) -> Vec<Vec<Vec<ChannelSample>>> {
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
     let (_, snapshots) = cpu.trace(0, 0, 1);
     assert_eq!(snapshots.len() as u32, campaign.time.steps + 1);
@@ -69,14 +69,14 @@ fn flight(campaign: &Campaign) -> Vec<Vec<Vec<Shown>>> {
 }
 
 /// What channel x of the first agent shows.
-fn of_x(more: &str) -> Vec<Shown> {
+fn of_x(more: &str) -> Vec<ChannelSample> {
     let flown = flight(&campaign(more));
     flown.into_iter().map(|agents| agents[0][X]).collect()
 }
 
 /// The command that a channel of translation wanted: m e'' = u + F - K v - m r'' and u_wanted = m (r'' + told) + K r', where no
 /// force F acts.
-fn wanted(shown: &Shown) -> f64 {
+fn wanted(shown: &ChannelSample) -> f64 {
     shown.u - DRAG_N_S_M * shown.e_rate - MASS_KG * shown.f1
 }
 
@@ -85,7 +85,7 @@ fn time_s(step: usize) -> f64 {
 }
 
 /// x' of the first agent.
-fn velocity(shown: &Shown, step: usize) -> f64 {
+fn velocity(shown: &ChannelSample, step: usize) -> f64 {
     AMPLITUDE_M * FREQUENCY_RAD_S * (FREQUENCY_RAD_S * time_s(step)).cos() + shown.e_rate
 }
 

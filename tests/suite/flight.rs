@@ -11,7 +11,7 @@ use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;
 use urts_mc::run::{Extras, Progress, run_on};
 use urts_mc::simulation::cross_check::cross_check;
-use urts_mc::simulation::{Backend, Engine, Flight, FlightError, Leg, Settings, fly};
+use urts_mc::simulation::{Backend, Engine, RunOptions, Segment, Simulation, SimulationError, fly};
 
 /// 24 short episodes.
 fn short() -> Campaign {
@@ -24,14 +24,14 @@ fn short() -> Campaign {
     )
 }
 
-fn in_batches_of_eight(backend: Backend) -> Settings {
-    Settings {
+fn in_batches_of_eight(backend: Backend) -> RunOptions {
+    RunOptions {
         backend,
         tuning: Tuning {
             batch: Some(8),
             steps: Some(100),
         },
-        ..Settings::cpu(Precision::F32)
+        ..RunOptions::cpu(Precision::F32)
     }
 }
 
@@ -40,9 +40,9 @@ fn fly_and_lose(
     gpu: &Gpu,
     backend: Backend,
     lost_after: u32,
-) -> (Result<Flight, FlightError>, u32) {
+) -> (Result<Simulation, SimulationError>, u32) {
     let campaign = short();
-    let gains = GainSet::obtain(&campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
     let told = AtomicU32::new(0);
     let flight = fly(
         &campaign,
@@ -84,11 +84,11 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others()
 
     // Both backends give nearly the same numbers, so the table is that of one flight.
     let campaign = short();
-    let gains = GainSet::obtain(&campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
     let whole = fly(
         &campaign,
         &gains,
-        &Settings::cpu(Precision::F32),
+        &RunOptions::cpu(Precision::F32),
         None,
         &|_| (),
     )
@@ -125,7 +125,7 @@ fn a_gpu_that_is_lost_ends_the_run_that_asked_for_it_and_the_finished_batches_ar
             cross_check: None,
         },
         &|at| {
-            if let Progress::Flown(episodes) = at
+            if let Progress::Simulated(episodes) = at
                 && told.fetch_add(episodes, Ordering::Relaxed) + episodes == 16
             {
                 gpu.destroy();
@@ -154,7 +154,7 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
     let campaign = short();
     let dir = tempfile::tempdir().unwrap();
     let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
-    let settings = in_batches_of_eight(Backend::Gpu { adapter: None });
+    let options = in_batches_of_eight(Backend::Gpu { adapter: None });
     let told = AtomicU32::new(0);
     let run = |gpu: Option<&Gpu>, lost_after: u32| {
         let extras = Extras {
@@ -162,8 +162,8 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
             cross_check: Some(0),
         };
         told.store(0, Ordering::Relaxed);
-        run_on(&campaign, &settings, gpu, Vec::new(), &out, extras, &|at| {
-            if let Progress::Flown(n) = at
+        run_on(&campaign, &options, gpu, Vec::new(), &out, extras, &|at| {
+            if let Progress::Simulated(n) = at
                 && told.fetch_add(n, Ordering::Relaxed) + n >= lost_after
                 && let Some(gpu) = gpu
             {
@@ -182,12 +182,12 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
 #[test]
 fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let campaign = short();
-    let gains = GainSet::obtain(&campaign).unwrap();
-    let settings = Settings::cpu(Precision::F32);
-    let mut flight = fly(&campaign, &gains, &settings, None, &|_| ()).unwrap();
-    let check = |flight: &Flight| {
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let options = RunOptions::cpu(Precision::F32);
+    let mut flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
+    let check = |flight: &Simulation| {
         let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-        cross_check(&campaign, &gains, &settings, leg, scores, None, 24).unwrap()
+        cross_check(&campaign, &gains, &options, leg, scores, None, 24).unwrap()
     };
     let sound = check(&flight);
     assert!(sound.holds() && sound.compared > 24, "{sound:?}");
@@ -205,16 +205,16 @@ fn a_flight_whose_every_difference_grows_is_left_out_of_the_cross_check() {
     // Under pid-tuned, loops of the episodes 118 and 119 oscillate and never repeat. In the first it is a limit of rate and lost
     // messages that keep one there: 1e-6 rad between two number formats are 0.2 rad two seconds later. The verdicts are the same.
     let campaign = altered("uav-faults", &[("episodes = 1000", "episodes = 120")]);
-    let gains = GainSet::obtain(&campaign).unwrap();
-    let settings = Settings::cpu(Precision::F32);
-    let flight = fly(&campaign, &gains, &settings, None, &|_| ()).unwrap();
-    let leg = Leg {
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let options = RunOptions::cpu(Precision::F32);
+    let flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
+    let leg = Segment {
         first: 112,
         episodes: 8,
         ..flight.legs[0].clone()
     };
     let scores = &flight.tables.scores;
-    let check = cross_check(&campaign, &gains, &settings, &leg, scores, None, 8).unwrap();
+    let check = cross_check(&campaign, &gains, &options, &leg, scores, None, 8).unwrap();
     assert!(check.holds() && check.sensitive == 2, "{check:?}");
     assert!(check.compared > 12, "{check:?}");
 }
@@ -226,7 +226,7 @@ fn a_gpu_that_flies_nothing_is_an_error_unless_the_cpu_may_fly() {
     let (flight, told) = fly_and_lose(&gpu, Backend::Gpu { adapter: None }, u32::MAX);
     assert!(matches!(
         flight,
-        Err(FlightError::Gpu(GpuError::Lost { .. }))
+        Err(SimulationError::Gpu(GpuError::Lost { .. }))
     ));
     assert_eq!(told, 0);
     let (flight, told) = fly_and_lose(&gpu, Backend::Auto, u32::MAX);
@@ -247,7 +247,7 @@ fn a_run_tells_its_phases_in_order_and_every_episode_once() {
     let told = Mutex::new(Vec::new());
     run_on(
         &campaign,
-        &Settings::cpu(Precision::F32),
+        &RunOptions::cpu(Precision::F32),
         None,
         Vec::new(),
         &out,
@@ -257,12 +257,12 @@ fn a_run_tells_its_phases_in_order_and_every_episode_once() {
     .unwrap();
     let told = told.into_inner().unwrap();
     let flown = |at: &Progress| match at {
-        Progress::Flown(episodes) => *episodes,
+        Progress::Simulated(episodes) => *episodes,
         _ => 0,
     };
     assert_eq!(told.iter().map(flown).sum::<u32>(), campaign.episodes);
     let (first, rest) = told.split_at(2);
-    assert_eq!(first, [Progress::Gains, Progress::Flight]);
+    assert_eq!(first, [Progress::Gains, Progress::Simulation]);
     let after: Vec<&Progress> = rest.iter().skip_while(|at| flown(at) > 0).collect();
     assert_eq!(
         after,

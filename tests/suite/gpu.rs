@@ -21,8 +21,8 @@ mod parity;
 
 use crate::common::{altered, repository};
 use urts_mc::agent::Agent;
-use urts_mc::backend::Flown;
-use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning};
+use urts_mc::backend::EpisodeResult;
+use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::synthesis::LoopGains;
 
@@ -178,7 +178,10 @@ const ALIKE: [(&str, &str); 3] = [
 ];
 
 /// Flies a campaign batch by batch.
-fn fly_all(flyer: &mut GpuFlyer<'_>, campaign: &Campaign) -> Result<Vec<Flown>, GpuError> {
+fn fly_all(
+    flyer: &mut GpuSimulator<'_>,
+    campaign: &Campaign,
+) -> Result<Vec<EpisodeResult>, GpuError> {
     let mut flown = Vec::new();
     let mut first = 0;
     while first < campaign.episodes {
@@ -190,7 +193,7 @@ fn fly_all(flyer: &mut GpuFlyer<'_>, campaign: &Campaign) -> Result<Vec<Flown>, 
 }
 
 /// Flies a campaign on the GPU.
-fn fly(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<Flown> {
-    let mut flyer = GpuFlyer::new(gpu, campaign, gains, tuning).unwrap();
+fn fly(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<EpisodeResult> {
+    let mut flyer = GpuSimulator::new(gpu, campaign, gains, tuning).unwrap();
     fly_all(&mut flyer, campaign).unwrap()
 }

@@ -9,7 +9,7 @@ use urts_mc::draw::draw;
 /// The largest |e| difference at the end of a smooth episode between two steps.
 fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {
     let end = |campaign: &Campaign| {
-        let gains = GainSet::obtain(campaign).unwrap();
+        let gains = GainSet::synthesize_or_load(campaign).unwrap();
         let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
         let (_, snapshots) = cpu.trace(0, 0, campaign.time.steps);
         let last = snapshots.last().unwrap();
@@ -132,7 +132,7 @@ fn the_observer_is_told_of_the_limits() {
         )
     };
     let campaign = quiet("3.0");
-    let gains = GainSet::obtain(&campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
     let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
     let (outcomes, snapshots) = cpu.trace(0, 0, 10);
     assert!(
@@ -158,7 +158,7 @@ fn noise_is_standard_normal_white_and_held_over_a_step() {
         ("duration_s = 20.0", "duration_s = 4.0"),
     ];
     let campaign = altered("scenario-a", &text);
-    let gains = GainSet::obtain(&campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
     let trace = |precision, simd| {
         Cpu::new(&campaign, &gains.loops(), precision, simd)
             .trace(0, 1, 1)

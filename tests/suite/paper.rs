@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
-use urts_mc::report::paper::{Claim, Flights, claim_dir, claims, paper};
+use urts_mc::report::paper::{Claim, Scenarios, claim_dir, claims, paper};
 use urts_mc::run::directory::OutputDir;
 
 /// The numbers of a sentence, in order.
@@ -79,14 +79,14 @@ fn val_the_claims_have_the_numbers_of_an_independent_program_and_the_shipped_fig
 }
 
 /// Scenario A with parts of its text replaced; each part must be there.
-fn uavs(changes: &[(&str, &str)]) -> Flights {
+fn uavs(changes: &[(&str, &str)]) -> Scenarios {
     let path = repository("campaigns/scenario-a.toml");
     let mut text = fs::read_to_string(&path).unwrap();
     for (old, new) in changes {
         assert!(text.contains(old), "{old:?}");
         text = text.replace(old, new);
     }
-    Flights::fly(&text, &path).unwrap()
+    Scenarios::fly(&text, &path).unwrap()
 }
 
 /// What became of the UAV's claim with these words.
@@ -143,7 +143,7 @@ fn what_the_campaign_says_reaches_the_claims() {
 #[test]
 fn a_campaign_of_which_the_claims_cannot_be_asked_is_refused() {
     let path = repository("campaigns/smoke.toml");
-    let error = Flights::fly(&fs::read_to_string(&path).unwrap(), &path).unwrap_err();
+    let error = Scenarios::fly(&fs::read_to_string(&path).unwrap(), &path).unwrap_err();
     let text = error.to_string();
     assert!(
         text.contains("smoke.toml") && text.contains("one sine"),

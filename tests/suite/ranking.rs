@@ -3,7 +3,7 @@
 use crate::common::{campaign, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
-use urts_mc::results::sensitivity::{RankedCondition, rank, worst};
+use urts_mc::results::sensitivity::{SensitivityResult, rank, worst};
 use urts_mc::results::tables::{Scores, Status};
 
 /// A campaign whose controllers have reasons to fail, and its scores.
@@ -15,10 +15,10 @@ fn flown(name: &str, episodes: u32) -> (Campaign, Scores) {
 }
 
 fn sure<'a>(
-    ranking: &'a [RankedCondition],
+    ranking: &'a [SensitivityResult],
     kind: &'a str,
     controller: &'a str,
-) -> impl Iterator<Item = &'a RankedCondition> {
+) -> impl Iterator<Item = &'a SensitivityResult> {
     ranking.iter().filter(move |ranked| {
         let target = &ranked.target;
         target.kind == kind && target.controller == controller && ranked.p_holm.unwrap() <= 0.05

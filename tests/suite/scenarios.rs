@@ -6,7 +6,7 @@ use serde_json::Value;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 use urts_mc::model::episode::Snapshot;
 
 /// What the reference data states for gains of its own, relative to the largest entry of a quantity.
@@ -18,7 +18,7 @@ const SAMPLE_S: f64 = 0.01;
 const SETTLE_S: f64 = 2.0;
 
 /// A quantity of the golden file and where a snapshot shows it.
-type Quantity = (&'static str, fn(&Shown) -> f64);
+type Quantity = (&'static str, fn(&ChannelSample) -> f64);
 const QUANTITIES: [Quantity; 7] = [
     ("e", |shown| shown.e),
     ("edot", |shown| shown.e_rate),
@@ -42,7 +42,7 @@ fn trajectory(
     precision: Precision,
     simd: Option<Simd>,
 ) -> Vec<Snapshot> {
-    let gains = GainSet::obtain(campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let index = campaign
         .controllers
         .iter()
@@ -101,7 +101,7 @@ fn differences(expected: &Value, trajectory: &[Snapshot]) -> Vec<(String, f64)> 
         (
             "rmse_t_ge_2",
             settled,
-            (|shown| shown.e) as fn(&Shown) -> f64,
+            (|shown| shown.e) as fn(&ChannelSample) -> f64,
         ),
         ("u_rms", trajectory, |shown| shown.u),
         ("f1_rms_err", settled, |shown| shown.f1_hat - shown.f1),
@@ -116,7 +116,7 @@ fn differences(expected: &Value, trajectory: &[Snapshot]) -> Vec<(String, f64)> 
         (
             "max_abs_e_t_ge_2",
             settled,
-            (|shown| shown.e) as fn(&Shown) -> f64,
+            (|shown| shown.e) as fn(&ChannelSample) -> f64,
         ),
         ("u_max", trajectory, |shown| shown.u),
     ] {
@@ -134,11 +134,11 @@ fn differences(expected: &Value, trajectory: &[Snapshot]) -> Vec<(String, f64)> 
     found
 }
 
-fn all(snapshot: &Snapshot, pick: fn(&Shown) -> f64) -> Vec<f64> {
+fn all(snapshot: &Snapshot, pick: fn(&ChannelSample) -> f64) -> Vec<f64> {
     snapshot.agents.iter().flatten().map(pick).collect()
 }
 
-fn root_mean_squares(samples: &[Snapshot], pick: fn(&Shown) -> f64) -> Vec<f64> {
+fn root_mean_squares(samples: &[Snapshot], pick: fn(&ChannelSample) -> f64) -> Vec<f64> {
     let mut sums = [0.0; 18];
     for snapshot in samples {
         for (sum, value) in sums.iter_mut().zip(all(snapshot, pick)) {

@@ -12,8 +12,8 @@ use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;
 use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
-use urts_mc::simulation::stopping::{Stopped, Watch};
-use urts_mc::simulation::{Backend, Flight, Settings, fly};
+use urts_mc::simulation::stopping::{Stopped, StoppingRule};
+use urts_mc::simulation::{Backend, RunOptions, Simulation, fly};
 use urts_mc::statistics::{clopper_pearson_upper, sequential_interval, sequential_upper};
 
 fn stopping(keys: &str, episodes: u32) -> Campaign {
@@ -29,7 +29,7 @@ fn stopping(keys: &str, episodes: u32) -> Campaign {
 
 /// A run whose controller fails at this rate: what it knows at its end.
 fn synthetic(campaign: &Campaign, rate: f64, experiment: u32) -> (Stopped, bool) {
-    let mut watch = Watch::new(campaign);
+    let mut watch = StoppingRule::new(campaign);
     for episode in 0..campaign.episodes {
         let address = Address {
             episode,
@@ -125,7 +125,7 @@ fn looks_are_where_the_campaign_says_and_one_sided_goals_spend_all_doubt_on_thei
     assert_eq!(stop.reached(10, 10), Some(Goal::Above(0.2)));
     // Nothing is stopped, and nothing found, without [stop].
     let plain = altered("smoke", &[]);
-    assert_eq!(Watch::new(&plain).found(&plain), None);
+    assert_eq!(StoppingRule::new(&plain).found(&plain), None);
 }
 
 /// The plain PID fails in most episodes, which proves a rate above 50 % soon.
@@ -136,27 +136,27 @@ fn failing() -> Campaign {
     )
 }
 
-fn flown(settings: &Settings, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Flight {
+fn flown(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
     let campaign = failing();
-    let gains = GainSet::obtain(&campaign).unwrap();
-    fly(&campaign, &gains, settings, gpu, &|_| ()).unwrap()
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    fly(&campaign, &gains, options, gpu, &|_| ()).unwrap()
 }
 
 #[test]
 fn a_run_ends_at_the_same_episode_whatever_flies_it() {
-    let settings = |threads, simd| Settings {
+    let options = |threads, simd| RunOptions {
         threads,
         simd,
-        ..Settings::cpu(Precision::F32)
+        ..RunOptions::cpu(Precision::F32)
     };
-    let first = flown(&settings(1, None), None);
+    let first = flown(&options(1, None), None);
     let episodes = first.episodes();
     println!("ended after {episodes}");
     assert!((7..300).contains(&episodes) && episodes.is_multiple_of(6));
     assert_eq!(first.tables.scores.episodes(), episodes as usize);
     let statuses = &first.tables.scores.status;
     for (threads, simd) in [(2, None), (3, Some(Simd::Scalar)), (2, Some(Simd::Avx2))] {
-        let other = flown(&settings(threads, simd), None);
+        let other = flown(&options(threads, simd), None);
         assert_eq!(other.episodes(), episodes);
         assert_eq!(&other.tables.scores.status, statuses);
     }
@@ -166,12 +166,12 @@ fn a_run_ends_at_the_same_episode_whatever_flies_it() {
             batch: Some(batch),
             steps: None,
         };
-        let settings = Settings {
+        let options = RunOptions {
             backend: Backend::Gpu { adapter: None },
             tuning,
-            ..Settings::cpu(Precision::F32)
+            ..RunOptions::cpu(Precision::F32)
         };
-        let other = flown(&settings, Some(&gpu));
+        let other = flown(&options, Some(&gpu));
         assert_eq!(other.episodes(), episodes);
         assert_eq!((other.legs.len(), other.legs[0].episodes), (1, episodes));
         assert_eq!(&other.tables.scores.status, statuses);
@@ -183,12 +183,12 @@ fn a_stopped_run_is_whole_says_why_it_ended_and_has_the_bounds_that_hold() {
     let campaign = failing();
     let dir = tempfile::tempdir().unwrap();
     let out = OutputDir::claim(&dir.path().join("run"), &campaign, false).unwrap();
-    let settings = Settings::cpu(Precision::F32);
+    let options = RunOptions::cpu(Precision::F32);
     let extras = Extras {
         csv: false,
         cross_check: Some(2),
     };
-    let findings = run(&campaign, &settings, &out, extras, &|_| ()).unwrap();
+    let findings = run(&campaign, &options, &out, extras, &|_| ()).unwrap();
     let manifest = Manifest::read(out.path()).unwrap();
     let stopped = manifest.stopped.unwrap();
     assert_eq!(manifest.episodes_asked, 300);

@@ -135,7 +135,7 @@ fn a_stratum_decides_which_faults_occur_and_nothing_else() {
                         assert_eq!(own.occurs(), certain.contains(&fault));
                     }
                     // With its own probability: as where the campaign is not divided.
-                    StratumFaults::Drawn => {
+                    StratumFaults::RandomQuantity => {
                         assert_eq!(own, &drawn.faults[fault]);
                         mixed[0] += u32::from(fault == 0 && own.occurs());
                         mixed[1] += u32::from(fault == 0);

@@ -5,12 +5,12 @@ use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
 use super::layout;
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
-use super::pipeline::{ENTRIES, Entry, Group, binding_layout, shape};
+use super::pipeline::{ENTRIES, Entry, Pipeline, binding_layout, shape};
 use super::uniforms::setting;
-use crate::backend::Flown;
+use crate::backend::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Controller, ControllerKind, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
@@ -50,11 +50,11 @@ pub struct GpuTimes {
 }
 
 /// A campaign's controllers, ready to fly on a GPU.
-pub struct GpuFlyer<'g> {
+pub struct GpuSimulator<'g> {
     gpu: &'g Gpu,
     model: Model<f32>,
     controllers: Vec<Controller<f32>>,
-    groups: Vec<Group>,
+    groups: Vec<Pipeline>,
     layout: wgpu::BindGroupLayout,
     buffers: Buffers,
     tuning: Tuning,
@@ -67,7 +67,7 @@ pub struct GpuFlyer<'g> {
 pub struct Instantly<'a> {
     /// Step number.
     pub step: u32,
-    groups: &'a [Group],
+    groups: &'a [Pipeline],
     /// Of each group, the words of this instant.
     words: Vec<&'a [u32]>,
 }
@@ -75,7 +75,7 @@ pub struct Instantly<'a> {
 impl Instantly<'_> {
     /// What every agent and channel of an episode shows, `[agent][channel]`; episodes are counted within the trace.
     #[must_use]
-    pub fn agents(&self, episode: usize, controller: usize) -> Vec<Vec<Shown>> {
+    pub fn agents(&self, episode: usize, controller: usize) -> Vec<Vec<ChannelSample>> {
         let groups = || {
             let groups = self.groups.iter().zip(&self.words);
             groups.filter(|(group, _)| group.controller == controller)
@@ -83,7 +83,7 @@ impl Instantly<'_> {
         let team = groups().next().map_or(0, |(group, _)| group.shape.team);
         (0..team)
             .map(|agent| {
-                let channels = groups().flat_map(|(Group { shape, .. }, words)| {
+                let channels = groups().flat_map(|(Pipeline { shape, .. }, words)| {
                     let (block, lane) = (episode / shape.lanes, episode % shape.lanes);
                     let words = &words[block * SHOWN_WORDS * shape.workgroup()..];
                     (0..shape.channels).map(move |channel| {
@@ -96,7 +96,7 @@ impl Instantly<'_> {
     }
 }
 
-impl<'g> GpuFlyer<'g> {
+impl<'g> GpuSimulator<'g> {
     /// Prepares a campaign: tabulates the references, rounds the gains, compiles the shaders, allocates the buffers; `gains`
     /// as for [`crate::backend::cpu::Cpu::new`].
     ///
@@ -114,7 +114,7 @@ impl<'g> GpuFlyer<'g> {
     /// The same with changed shaders, to test that a test would notice.
     ///
     /// # Errors
-    /// As [`GpuFlyer::new`].
+    /// As [`GpuSimulator::new`].
     #[doc(hidden)]
     pub fn rewritten(
         gpu: &'g Gpu,
@@ -127,7 +127,7 @@ impl<'g> GpuFlyer<'g> {
         let controllers: Vec<_> = gains.iter().map(|groups| Controller::new(groups)).collect();
         let layout = binding_layout(gpu);
         let start = Instant::now();
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<Pipeline> = Vec::new();
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
                 let shape = shape(gpu, campaign, part, gains.kind == ControllerKind::Ftc)?;
@@ -143,7 +143,7 @@ impl<'g> GpuFlyer<'g> {
                     |error| gpu.driver_error(error),
                 )?;
                 gpu.write(&setting, 0, &bytes)?;
-                groups.push(Group {
+                groups.push(Pipeline {
                     part: number,
                     controller,
                     shape,
@@ -184,7 +184,7 @@ impl<'g> GpuFlyer<'g> {
         self.times
     }
 
-    /// Flies a range of at most [`GpuFlyer::batch`] episodes under every controller, in order; `done` is told how many
+    /// Flies a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told how many
     /// episodes' worth of steps came to an end.
     ///
     /// # Errors
@@ -193,7 +193,7 @@ impl<'g> GpuFlyer<'g> {
         &mut self,
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
-    ) -> Result<Vec<Flown>, GpuError> {
+    ) -> Result<Vec<EpisodeResult>, GpuError> {
         let campaign = &self.model.campaign;
         let start = Instant::now();
         let episodes: Vec<Episode> = episodes
@@ -235,7 +235,7 @@ impl<'g> GpuFlyer<'g> {
         episodes: &[u32],
         every: u32,
         visit: &mut dyn FnMut(&Instantly<'_>),
-    ) -> Result<Vec<Flown>, GpuError> {
+    ) -> Result<Vec<EpisodeResult>, GpuError> {
         let campaign = &self.model.campaign;
         let (steps, every) = (campaign.time.steps, every.max(1));
         if episodes.is_empty() {
@@ -326,7 +326,7 @@ impl<'g> GpuFlyer<'g> {
     }
 
     /// Reads how the episodes of a batch ended.
-    fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<Flown>, GpuError> {
+    fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<EpisodeResult>, GpuError> {
         let campaign = &self.model.campaign;
         let steps = campaign.time.steps;
         let blank = vec![
@@ -334,9 +334,9 @@ impl<'g> GpuFlyer<'g> {
             self.controllers.len()
         ];
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
-        let mut flown: Vec<Flown> = episodes
+        let mut flown: Vec<EpisodeResult> = episodes
             .into_iter()
-            .map(|episode| Flown {
+            .map(|episode| EpisodeResult {
                 episode,
                 outcomes: blank.clone(),
             })

@@ -5,7 +5,7 @@ use super::batch::Tuning;
 use super::device;
 use super::device::{Gpu, Use};
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
-use super::pipeline::{Group, MAX_BATCH};
+use super::pipeline::{MAX_BATCH, Pipeline};
 use crate::model::episode::Model;
 use std::ops::Range;
 
@@ -44,7 +44,7 @@ impl Buffers {
     pub(super) fn largest(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        groups: &[Group],
+        groups: &[Pipeline],
         model: &Model<f32>,
         mut batch: usize,
     ) -> Result<Self, GpuError> {
@@ -60,7 +60,7 @@ impl Buffers {
     pub(super) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        groups: &[Group],
+        groups: &[Pipeline],
         model: &Model<f32>,
         batch: usize,
         samples: usize,
@@ -70,7 +70,7 @@ impl Buffers {
             .map(|group| window_steps(group, gpu, model.campaign.time.steps))
             .min()
             .unwrap_or(1);
-        let sizes = |group: &Group| Sizes::new(group, batch, samples, window_steps);
+        let sizes = |group: &Pipeline| Sizes::new(group, batch, samples, window_steps);
         let words: usize = groups.iter().map(|group| sizes(group).total()).sum();
         gpu.checked(
             || {
@@ -120,7 +120,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    pub(super) fn new(group: &Group, batch: usize, samples: usize, window_steps: u32) -> Self {
+    pub(super) fn new(group: &Pipeline, batch: usize, samples: usize, window_steps: u32) -> Self {
         let shape = &group.shape;
         let words = shape.words();
         let invocations = group.invocations(batch);
@@ -141,7 +141,7 @@ impl OwnBuffers {
     pub(super) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        group: &Group,
+        group: &Pipeline,
         shared: &SharedBuffers,
         spans: &wgpu::Buffer,
         sizes: &Sizes,
@@ -188,7 +188,7 @@ pub(super) fn storage_limit(gpu: &Gpu) -> u64 {
 }
 
 /// Steps whose references fit the table on the device.
-pub(super) fn window_steps(group: &Group, gpu: &Gpu, steps: u32) -> u32 {
+pub(super) fn window_steps(group: &Pipeline, gpu: &Gpu, steps: u32) -> u32 {
     let instant = 16 * group.shape.table_rows();
     let bytes = TABLE.min(usize::try_from(storage_limit(gpu)).unwrap_or(TABLE));
     word((bytes / instant).saturating_sub(1) / 2).clamp(1, steps)
@@ -200,9 +200,9 @@ pub(super) fn span_stride(gpu: &Gpu) -> usize {
 }
 
 /// Episodes of a batch: what is asked for, or what fills the device, within the limits of buffers and memory.
-pub(super) fn batch(gpu: &Gpu, groups: &[Group], episodes: u32, tuning: Tuning) -> usize {
+pub(super) fn batch(gpu: &Gpu, groups: &[Pipeline], episodes: u32, tuning: Tuning) -> usize {
     let limit = storage_limit(gpu);
-    let per_episode = |group: &Group| {
+    let per_episode = |group: &Pipeline| {
         let sizes = Sizes::new(group, group.shape.lanes, 0, 0);
         let largest = sizes.state.max(sizes.draws).max(sizes.output);
         (

@@ -4,10 +4,10 @@ use super::shape::Shape;
 use super::signals::{LISTS, Lists, bursts, switches, waves};
 use crate::campaign::{Campaign, FaultKind, Time};
 use crate::draw::Episode;
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, PlantKind};
-use crate::model::exogenous::Wave;
-use crate::model::inputs::{Block, Condition, Entries};
+use crate::model::exogenous::Oscillation;
+use crate::model::inputs::{ChannelInputs, LaneBlock, Selection};
 use crate::model::metric::{ChannelOutcome, Metrics};
 use crate::model::team::Ending;
 use bytemuck::{Pod, Zeroable};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums, episode.
 pub(crate) const OUTCOME_WORDS: usize = 13;
-/// Words of what a channel shows: the fields of [`Shown`].
+/// Words of what a channel shows: the fields of [`ChannelSample`].
 pub(crate) const SHOWN_WORDS: usize = 10;
 /// A step that never comes.
 pub(crate) const NEVER: u32 = u32::MAX;
@@ -34,12 +34,12 @@ const MEMORY_WORDS: usize = 6;
 
 /// Where the words of a channel are, in its draw and in its state.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Words<'l> {
+pub(crate) struct Layout<'l> {
     lists: &'l Lists,
     states: usize,
 }
 
-impl<'l> Words<'l> {
+impl<'l> Layout<'l> {
     pub(crate) fn new(lists: &'l Lists, states: usize) -> Self {
         Self { lists, states }
     }
@@ -149,11 +149,11 @@ pub(crate) fn lists<const NC: usize>(
     first: usize,
     episode: &Episode,
 ) -> Lists {
-    let condition: Condition<f32, NC> = Block {
+    let condition: ChannelInputs<f32, NC> = LaneBlock {
         campaign,
         episodes: std::slice::from_ref(episode),
     }
-    .condition(0, first, Entries::Possible);
+    .condition(0, first, Selection::Possible);
     Lists::of(
         &condition.signals,
         condition.vortices.len(),
@@ -212,13 +212,13 @@ fn draws_of<const NC: usize>(
         .for_each(|(out, episodes)| {
             for lane in 0..shape.lanes {
                 let episode = &episodes[lane.min(episodes.len() - 1)];
-                let block = Block {
+                let block = LaneBlock {
                     campaign,
                     episodes: std::slice::from_ref(episode),
                 };
                 for agent in 0..shape.team {
-                    let condition: Condition<f32, NC> =
-                        block.condition(agent, first, Entries::Possible);
+                    let condition: ChannelInputs<f32, NC> =
+                        block.condition(agent, first, Selection::Possible);
                     for channel in 0..NC {
                         let place = shape.place(channel, agent, lane);
                         let drawn = drawn(episode.index, &condition, channel);
@@ -232,10 +232,10 @@ fn draws_of<const NC: usize>(
     all
 }
 
-/// The words of one channel's draw, in the order of [`Words::named`].
+/// The words of one channel's draw, in the order of [`Layout::named`].
 pub(crate) fn drawn<const NC: usize>(
     episode: u32,
-    condition: &Condition<f32, NC>,
+    condition: &ChannelInputs<f32, NC>,
     c: usize,
 ) -> Vec<u32> {
     let signals = &condition.signals;
@@ -259,7 +259,7 @@ pub(crate) fn drawn<const NC: usize>(
         words.extend([burst.slot_steps[c][0], burst.threshold[c][0]]);
     }
     for wave in waves(signals) {
-        let Wave {
+        let Oscillation {
             inverse_smoothing,
             phase,
             advance,
@@ -337,10 +337,10 @@ fn ended(time: Time, word: impl Fn(usize) -> u32) -> (Ending, ChannelOutcome) {
 }
 
 /// What a channel shows, from its words `[word][channel][agent][episode]`.
-pub(crate) fn shown(words: &[u32], shape: &Shape, place: usize) -> Shown {
+pub(crate) fn shown(words: &[u32], shape: &Shape, place: usize) -> ChannelSample {
     let number = |k: usize| f64::from(f32::from_bits(words[k * shape.workgroup() + place]));
     let [r, x, e, e_rate, e_hat, f1, f1_hat, f2, f2_hat, u] = std::array::from_fn(number);
-    Shown {
+    ChannelSample {
         r,
         x,
         e,

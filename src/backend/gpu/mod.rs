@@ -21,7 +21,7 @@ pub(crate) mod uniforms;
 mod probes;
 
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
-pub use batch::{GpuFlyer, GpuTimes, Tuning};
+pub use batch::{GpuSimulator, GpuTimes, Tuning};
 pub use device::Gpu;
 
 use crate::util::suggest::did_you_mean;

@@ -8,7 +8,7 @@ use crate::agent::Agent;
 use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::draw;
 use crate::model::agent::Coupling;
-use crate::model::episode::{Part, PlantKind};
+use crate::model::episode::{PlantKind, Subsystem};
 
 /// Invocations that a workgroup should have: several warps, and several workgroups on each multiprocessor.
 pub(super) const WORKGROUP: usize = 256;
@@ -19,7 +19,7 @@ pub(super) const MAX_LANES: usize = 64;
 pub(super) const MAX_BATCH: u32 = 16_384;
 
 /// A group of channels under one controller, and its shaders.
-pub(super) struct Group {
+pub(super) struct Pipeline {
     /// Which of the model's groups.
     pub(super) part: usize,
     pub(super) controller: usize,
@@ -28,7 +28,7 @@ pub(super) struct Group {
     pub(super) setting: wgpu::Buffer,
 }
 
-/// The entry points, in the order of [`Group::pipelines`].
+/// The entry points, in the order of [`Pipeline::pipelines`].
 #[derive(Clone, Copy)]
 pub(super) enum Entry {
     Start,
@@ -39,7 +39,7 @@ pub(super) enum Entry {
 
 pub(crate) const ENTRIES: [&str; 4] = ["start", "advance", "show", "finish"];
 
-impl Group {
+impl Pipeline {
     /// Invocations of a dispatch.
     pub(super) fn invocations(&self, episodes: usize) -> usize {
         episodes.div_ceil(self.shape.lanes) * self.shape.workgroup()
@@ -80,7 +80,7 @@ pub(crate) fn binding_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 pub(super) fn shape(
     gpu: &Gpu,
     campaign: &Campaign,
-    part: &Part<f32>,
+    part: &Subsystem<f32>,
     ftc: bool,
 ) -> Result<Shape, GpuError> {
     let first = part.channels.start;

@@ -1,7 +1,7 @@
 //! The WGSL text of a group of channels: the files of `shaders/`, joined, under constants that come from here and from
 //! `src/model`, so that every number and size exists once.
 
-use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Words};
+use super::layout::{Layout, OUTCOME_WORDS, SHOWN_WORDS};
 use super::signals::Lists;
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::draw::MEMBERS_PER_AGENT;
@@ -244,7 +244,7 @@ impl Shape {
         text.words("MULTIPLIERS", philox::MULTIPLIERS);
         text.words("WEYL", philox::WEYL);
         text.count("STREAM_NOISE", Stream::Noise as usize);
-        text.count("STREAM_BURST", Stream::Burst as usize);
+        text.count("STREAM_BURST", Stream::IntermittentWindow as usize);
         text.count("STREAM_TURBULENCE", Stream::Turbulence as usize);
         text.count("MEMBERS_PER_AGENT", MEMBERS_PER_AGENT);
 
@@ -273,8 +273,8 @@ impl Shape {
     }
 
     /// Where a channel's words are.
-    pub(crate) fn words(&self) -> Words<'_> {
-        Words::new(&self.lists, self.states())
+    pub(crate) fn words(&self) -> Layout<'_> {
+        Layout::new(&self.lists, self.states())
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a campaign's signals are, but for their numbers: what the text of a shader depends on.
 
-use crate::model::exogenous::window::{Burst, Switch};
-use crate::model::exogenous::{Signals, Wave};
+use crate::model::exogenous::window::{IntermittentWindow, Window};
+use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::Lane;
 
 /// The lists of what switches, in their order: switches are counted through, so those of bursts, of waves and of rings lie
@@ -54,7 +54,7 @@ pub(crate) struct Lists {
     pub(crate) ring_steps: usize,
     /// Steps for which a command is held.
     pub(crate) hold_steps: u32,
-    /// [`Signals::is_restless`], [`Signals::remembers`], [`Signals::carries`], [`Signals::distorts`].
+    /// [`ExogenousInputs::is_restless`], [`ExogenousInputs::remembers`], [`ExogenousInputs::carries`], [`ExogenousInputs::distorts`].
     pub(crate) restless: bool,
     pub(crate) remembers: bool,
     pub(crate) carries: bool,
@@ -63,12 +63,13 @@ pub(crate) struct Lists {
 
 /// All switches of a channel, `[list][item]`.
 pub(crate) fn switches<L: Lane, const NC: usize>(
-    signals: &Signals<L, NC>,
+    signals: &ExogenousInputs<L, NC>,
     c: usize,
-) -> [Vec<Switch<L>>; LISTS.len()] {
-    let plain = |list: &[[Switch<L>; NC]]| list.iter().map(|item| item[c]).collect();
-    let bursts = |list: &[Burst<L, NC>]| list.iter().map(|item| item.switch[c]).collect();
-    let waves = |list: &[[Wave<L>; NC]]| list.iter().map(|item| item[c].switch).collect();
+) -> [Vec<Window<L>>; LISTS.len()] {
+    let plain = |list: &[[Window<L>; NC]]| list.iter().map(|item| item[c]).collect();
+    let bursts =
+        |list: &[IntermittentWindow<L, NC>]| list.iter().map(|item| item.switch[c]).collect();
+    let waves = |list: &[[Oscillation<L>; NC]]| list.iter().map(|item| item[c].switch).collect();
     [
         plain(&signals.losses),
         plain(&signals.hard_overs),
@@ -104,8 +105,8 @@ pub(crate) fn switches<L: Lane, const NC: usize>(
 
 /// All bursts, in the order of their switches.
 pub(crate) fn bursts<L: Lane, const NC: usize>(
-    signals: &Signals<L, NC>,
-) -> impl Iterator<Item = &Burst<L, NC>> {
+    signals: &ExogenousInputs<L, NC>,
+) -> impl Iterator<Item = &IntermittentWindow<L, NC>> {
     let lists = [
         &signals.intermittents,
         &signals.command_holds,
@@ -117,8 +118,8 @@ pub(crate) fn bursts<L: Lane, const NC: usize>(
 
 /// All waves, in the order of their switches.
 pub(crate) fn waves<L: Lane, const NC: usize>(
-    signals: &Signals<L, NC>,
-) -> impl Iterator<Item = &[Wave<L>; NC]> {
+    signals: &ExogenousInputs<L, NC>,
+) -> impl Iterator<Item = &[Oscillation<L>; NC]> {
     let lists = [
         &signals.sines,
         &signals.gusts,
@@ -132,7 +133,7 @@ pub(crate) fn waves<L: Lane, const NC: usize>(
 impl Lists {
     /// Those of signals that are listed as [`Entries::Possible`], and of as many vortices; rings keep up to `ring_steps` samples.
     pub(crate) fn of<L: Lane, const NC: usize>(
-        signals: &Signals<L, NC>,
+        signals: &ExogenousInputs<L, NC>,
         vortices: usize,
         ring_steps: usize,
     ) -> Self {

@@ -1,14 +1,14 @@
-//! The constants of a group of channels under a controller, as its shaders read them: `Setting` in shaders/episode.wgsl.
+//! The constants of a group of channels under a controller, as its shaders read them: `Uniforms` in shaders/episode.wgsl.
 
 use super::layout::word;
 use crate::agent::{Agent, Biped, HEIGHT};
 use crate::campaign::Campaign;
 use crate::model::controller::ChannelGains;
-use crate::model::episode::{Controller, Part, PlantKind};
+use crate::model::episode::{Controller, PlantKind, Subsystem};
 use crate::model::integrator::Step;
 use crate::model::metric::Limits;
-use crate::model::plant::biped::Leg;
-use crate::model::plant::leg::{LEG_JOINTS, LegWords};
+use crate::model::plant::biped::LegPlant;
+use crate::model::plant::leg::{LEG_JOINTS, LegUniforms};
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use crate::random::philox::key;
 use bytemuck::{Pod, Zeroable};
@@ -16,7 +16,7 @@ use bytemuck::{Pod, Zeroable};
 /// Twin of `Uav` in shaders/plant_uav.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct UavWords {
+pub(crate) struct UavUniforms {
     pub(crate) mass: f32,
     pub(crate) inverse_mass: f32,
     pub(crate) drag: f32,
@@ -35,22 +35,22 @@ pub(crate) struct UavWords {
 /// Twin of `Leg` in shaders/plant_biped.wgsl.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct LegPlantWords {
-    pub(crate) model: LegWords,
+pub(crate) struct LegPlantUniforms {
+    pub(crate) model: LegUniforms,
     pub(crate) max_torque: [f32; 8],
 }
 
 /// Twin of `ChannelGains` in shaders/controller.wgsl.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct GainsWords {
+pub(crate) struct GainsUniforms {
     pub(crate) feedback: [f32; 8],
     pub(crate) injection: [[f32; 4]; 7],
     pub(crate) smoothing: [f32; 4],
     pub(crate) sensor_fault_input: [f32; 4],
 }
 
-/// Twin of `Setting` in shaders/episode.wgsl, up to the constants of its plant and its arrays: limits, gains.
+/// Twin of `Uniforms` in shaders/episode.wgsl, up to the constants of its plant and its arrays: limits, gains.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SettingHead {
@@ -64,7 +64,7 @@ fn four<const N: usize>(values: [f32; N]) -> [f32; 4] {
     std::array::from_fn(|k| values.get(k).copied().unwrap_or_default())
 }
 
-impl From<Axis<f32>> for UavWords {
+impl From<Axis<f32>> for UavUniforms {
     fn from(axis: Axis<f32>) -> Self {
         Self {
             mass: axis.mass,
@@ -75,14 +75,14 @@ impl From<Axis<f32>> for UavWords {
     }
 }
 
-impl From<Translation<f32>> for UavWords {
+impl From<Translation<f32>> for UavUniforms {
     fn from(translation: Translation<f32>) -> Self {
         // Gravity is that of the height; the shaders know which axis it pulls along.
         Self::from(translation.axes[HEIGHT])
     }
 }
 
-impl From<Attitude<f32>> for UavWords {
+impl From<Attitude<f32>> for UavUniforms {
     fn from(attitude: Attitude<f32>) -> Self {
         Self {
             inertia: four(attitude.inertia),
@@ -93,7 +93,7 @@ impl From<Attitude<f32>> for UavWords {
     }
 }
 
-impl From<Thrust<f32>> for UavWords {
+impl From<Thrust<f32>> for UavUniforms {
     fn from(thrust: Thrust<f32>) -> Self {
         Self {
             mass: thrust.mass,
@@ -111,48 +111,48 @@ impl From<Thrust<f32>> for UavWords {
 }
 
 /// A plant's constants as its shaders read them.
-pub(crate) trait PlantWords {
+pub(crate) trait PlantUniforms {
     /// The bytes of `Plant` in the shaders.
     fn bytes(&self) -> Vec<u8>;
 }
 
-impl PlantWords for Axis<f32> {
+impl PlantUniforms for Axis<f32> {
     fn bytes(&self) -> Vec<u8> {
-        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+        bytemuck::bytes_of(&UavUniforms::from(*self)).to_vec()
     }
 }
 
-impl PlantWords for Translation<f32> {
+impl PlantUniforms for Translation<f32> {
     fn bytes(&self) -> Vec<u8> {
-        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+        bytemuck::bytes_of(&UavUniforms::from(*self)).to_vec()
     }
 }
 
-impl PlantWords for Attitude<f32> {
+impl PlantUniforms for Attitude<f32> {
     fn bytes(&self) -> Vec<u8> {
-        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+        bytemuck::bytes_of(&UavUniforms::from(*self)).to_vec()
     }
 }
 
-impl PlantWords for Thrust<f32> {
+impl PlantUniforms for Thrust<f32> {
     fn bytes(&self) -> Vec<u8> {
-        bytemuck::bytes_of(&UavWords::from(*self)).to_vec()
+        bytemuck::bytes_of(&UavUniforms::from(*self)).to_vec()
     }
 }
 
-impl<const CUT: bool> PlantWords for Leg<f32, CUT> {
+impl<const CUT: bool> PlantUniforms for LegPlant<f32, CUT> {
     fn bytes(&self) -> Vec<u8> {
         let mut max_torque = [0.0; 8];
         max_torque[..LEG_JOINTS].copy_from_slice(&self.max_torque);
-        let words = LegPlantWords {
-            model: LegWords::from(&self.model),
+        let words = LegPlantUniforms {
+            model: LegUniforms::from(&self.model),
             max_torque,
         };
         bytemuck::bytes_of(&words).to_vec()
     }
 }
 
-impl From<&ChannelGains<f32>> for GainsWords {
+impl From<&ChannelGains<f32>> for GainsUniforms {
     fn from(gains: &ChannelGains<f32>) -> Self {
         Self {
             feedback: std::array::from_fn(|k| gains.feedback.get(k).copied().unwrap_or_default()),
@@ -163,10 +163,10 @@ impl From<&ChannelGains<f32>> for GainsWords {
     }
 }
 
-/// The bytes of a group's `Setting` under a controller.
+/// The bytes of a group's `Uniforms` under a controller.
 pub(crate) fn setting(
     campaign: &Campaign,
-    part: &Part<f32>,
+    part: &Subsystem<f32>,
     controller: &Controller<f32>,
 ) -> Vec<u8> {
     let h = Step::<f32>::new(campaign.time.step_s);
@@ -202,13 +202,13 @@ pub(crate) fn setting(
             .clone()
             .any(|channel| group.channels.contains(&channel))
         {
-            bytes.extend(bytemuck::bytes_of(&GainsWords::from(gains)));
+            bytes.extend(bytemuck::bytes_of(&GainsUniforms::from(gains)));
         }
     }
     bytes
 }
 
 /// The leg that a part of a biped's episode is. Whether limits cut its commands is no matter of its constants.
-pub(crate) fn leg(biped: &Biped, part: &Part<f32>) -> Leg<f32, false> {
-    Leg::new(&biped.robot, part.channels.start / LEG_JOINTS)
+pub(crate) fn leg(biped: &Biped, part: &Subsystem<f32>) -> LegPlant<f32, false> {
+    LegPlant::new(&biped.robot, part.channels.start / LEG_JOINTS)
 }

@@ -8,7 +8,7 @@ mod value;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
 pub use signals::*;
 pub use value::{
-    ChannelsFile, DistributionFile, NormalFile, Numbers, Per, TruncatedNormalFile, Value,
+    ChannelsFile, DistributionFile, NormalFile, Numbers, SamplingScope, TruncatedNormalFile, Value,
 };
 pub(super) use value::{in_toml, without_dust};
 

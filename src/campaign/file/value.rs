@@ -51,7 +51,7 @@ pub struct DistributionFile {
     pub weights: Option<Vec<f64>>,
     /// Drawn once per "episode", "agent" or "channel".
     #[serde(default, deserialize_with = "some_word")]
-    pub per: Option<Per>,
+    pub per: Option<SamplingScope>,
 }
 
 /// `normal`
@@ -81,7 +81,7 @@ pub struct TruncatedNormalFile {
 /// Who shares a draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Per {
+pub enum SamplingScope {
     /// All agents and channels of an episode.
     Episode,
     /// All channels of an agent.
@@ -173,7 +173,7 @@ pub(in crate::campaign) fn without_dust(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
-impl Per {
+impl SamplingScope {
     /// The name in a campaign file.
     pub(in crate::campaign) fn name(self) -> &'static str {
         match self {

@@ -59,7 +59,7 @@ pub(super) fn validate(
             key,
             value.as_ref(),
             Some(1.0),
-            Per::Episode,
+            SamplingScope::Episode,
             Bounds::Positive,
             team,
         )
@@ -88,7 +88,7 @@ pub(super) fn validate(
             "coupling.kappa",
             file.coupling.as_ref().map(|coupling| &coupling.kappa),
             Some(0.0),
-            Per::Episode,
+            SamplingScope::Episode,
             Bounds::Any,
             team,
         )?,
@@ -234,7 +234,7 @@ impl Check<'_> {
                 "control.delay_s",
                 value.as_ref(),
                 None,
-                Per::Episode,
+                SamplingScope::Episode,
                 Bounds::Positive,
                 team,
             )?),
@@ -290,7 +290,7 @@ impl Check<'_> {
                 name,
                 default: Some(0.0),
                 bounds: Bounds::Any,
-                per: Per::Channel,
+                per: SamplingScope::Channel,
             };
             self.per_channel("initial", file, blocks, parameter, team)
         };

@@ -5,7 +5,7 @@ use crate::agent::{Agent, FIRST_ATTITUDE};
 use crate::campaign::check::{Bounds, Check, Parameter, Written, of_agent};
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::{Distribution, Disturbance, Drawn, Fault, FaultChannels, Time};
+use crate::campaign::{Distribution, Disturbance, Fault, FaultChannels, RandomQuantity, Time};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ const ONSET: Parameter = Parameter {
     name: "onset_s",
     default: Some(0.0),
     bounds: Bounds::NonNegative,
-    per: Per::Agent,
+    per: SamplingScope::Agent,
 };
 /// How long it stays: to the end, if nothing is said.
 const DURATION: Parameter = of_agent("duration_s", Bounds::Positive);
@@ -266,7 +266,7 @@ impl Check<'_> {
         written: Written<'_>,
         parameter: Parameter,
         team: usize,
-    ) -> Result<Option<Drawn>, CampaignError> {
+    ) -> Result<Option<RandomQuantity>, CampaignError> {
         let given = |agent: &usize| written.of(table, parameter.name, *agent).1.is_some();
         match (0..team).filter(given).count() {
             0 => Ok(None),
@@ -361,7 +361,7 @@ impl Check<'_> {
         &self,
         table: &str,
         written: Written<'_>,
-        onset_s: &Drawn,
+        onset_s: &RandomQuantity,
         time: Time,
     ) -> Result<(), CampaignError> {
         let latest =
@@ -389,7 +389,7 @@ impl Check<'_> {
     pub(super) fn remembered(
         &self,
         key: &str,
-        length_s: &Drawn,
+        length_s: &RandomQuantity,
         time: Time,
     ) -> Result<(), CampaignError> {
         let supports = length_s.distributions.iter().map(Distribution::support);
@@ -413,7 +413,7 @@ impl Check<'_> {
     fn resolved(
         &self,
         key: &str,
-        drawn: &Drawn,
+        drawn: &RandomQuantity,
         fastest_rad_s: fn((f64, f64)) -> f64,
         time: Time,
     ) -> Result<(), CampaignError> {

@@ -7,11 +7,11 @@
 //!
 //! So only the limits of rate remember what acted; all else that is held lies before the actuator.
 
-use super::Signals;
+use super::ExogenousInputs;
 use super::delay_line::Moment;
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
-impl<L: Lane, const NC: usize> Signals<L, NC> {
+impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
     /// Sets what a channel's faults do to its command in step number `step`; `team` is the sum of the team's last commands.
     #[inline(always)]
     pub(crate) fn hold_command(

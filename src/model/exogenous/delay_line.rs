@@ -9,17 +9,17 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::window::Switch;
+use super::window::Window;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
 /// The last samples of `NV` signals of each channel. A delay reads the oldest and puts the newest in its place; a replay stops
 /// recording at its onset, and reads the same samples again and again.
 #[derive(Clone)]
-pub(crate) struct Ring<L, const NC: usize, const NV: usize> {
+pub(crate) struct DelayLine<L, const NC: usize, const NV: usize> {
     /// Whether recording goes on while the past is played.
     pub(crate) records: bool,
     /// When the past is played.
-    pub(crate) switch: [Switch<L>; NC],
+    pub(crate) switch: [Window<L>; NC],
     /// Samples that are kept, at least one, of each lane.
     pub(crate) length: [[u32; MAX_WIDTH]; NC],
     /// The samples, `[channel][place][signal][lane]`.
@@ -73,11 +73,11 @@ impl<L: Lane, const NC: usize> Actuator<L, NC> {
     }
 }
 
-impl<L: Lane, const NC: usize, const NV: usize> Ring<L, NC, NV> {
+impl<L: Lane, const NC: usize, const NV: usize> DelayLine<L, NC, NV> {
     /// A ring with nothing in it.
     pub(crate) fn new(
         records: bool,
-        switch: [Switch<L>; NC],
+        switch: [Window<L>; NC],
         length: [[u32; MAX_WIDTH]; NC],
     ) -> Self {
         let places = length.as_flattened().iter().copied().max().unwrap_or(1) as usize;

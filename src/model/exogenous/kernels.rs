@@ -1,16 +1,16 @@
 //! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type and number of channels, and not into every loop of
 //! every plant and controller.
 
-use super::Signals;
+use super::ExogenousInputs;
 use super::delay_line::Moment;
 use super::vortex;
 use super::vortex::Vortex;
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};
 
-/// [`Signals::hold`], for the start of a step.
+/// [`ExogenousInputs::hold`], for the start of a step.
 #[inline(always)]
 pub(crate) fn hold<L: Lane, const NC: usize>(
-    signals: &mut Signals<L, NC>,
+    signals: &mut ExogenousInputs<L, NC>,
     step: u32,
     team: &[L; NC],
     seed: u64,
@@ -26,7 +26,7 @@ pub(crate) fn hold<L: Lane, const NC: usize>(
 }
 
 struct Hold<'a, L: Lane, const NC: usize> {
-    signals: &'a mut Signals<L, NC>,
+    signals: &'a mut ExogenousInputs<L, NC>,
     step: u32,
     team: &'a [L; NC],
     seed: u64,
@@ -43,10 +43,10 @@ impl<L: Lane, const NC: usize> Kernel for Hold<'_, L, NC> {
     }
 }
 
-/// [`Signals::evaluate`], for the middle and the end of a step.
+/// [`ExogenousInputs::evaluate`], for the middle and the end of a step.
 #[inline(always)]
 pub(crate) fn evaluate<L: Lane, const NC: usize>(
-    signals: &mut Signals<L, NC>,
+    signals: &mut ExogenousInputs<L, NC>,
     step: u32,
     moment: Moment,
 ) {
@@ -58,7 +58,7 @@ pub(crate) fn evaluate<L: Lane, const NC: usize>(
 }
 
 struct Evaluate<'a, L: Lane, const NC: usize> {
-    signals: &'a mut Signals<L, NC>,
+    signals: &'a mut ExogenousInputs<L, NC>,
     step: u32,
     moment: Moment,
 }
@@ -74,7 +74,7 @@ impl<L: Lane, const NC: usize> Kernel for Evaluate<'_, L, NC> {
 /// By how much x and x' are measured too large at a moment of the step, beside f2.
 #[inline(always)]
 pub(crate) fn distortion<L: Lane, const NC: usize>(
-    signals: &Signals<L, NC>,
+    signals: &ExogenousInputs<L, NC>,
     moment: Moment,
     motion: &[[L; NC]; 2],
 ) -> [[L; 2]; NC] {
@@ -86,7 +86,7 @@ pub(crate) fn distortion<L: Lane, const NC: usize>(
 }
 
 struct Distortion<'a, L: Lane, const NC: usize> {
-    signals: &'a Signals<L, NC>,
+    signals: &'a ExogenousInputs<L, NC>,
     moment: Moment,
     motion: &'a [[L; NC]; 2],
 }
@@ -130,10 +130,10 @@ impl<L: Lane> Kernel for VortexForce<'_, L> {
     }
 }
 
-/// [`Signals::remember`] of every channel.
+/// [`ExogenousInputs::remember`] of every channel.
 #[inline(always)]
 pub(crate) fn remember<L: Lane, const NC: usize>(
-    signals: &mut Signals<L, NC>,
+    signals: &mut ExogenousInputs<L, NC>,
     step: u32,
     wanted: &[L; NC],
     motion: &[[L; NC]; 2],
@@ -147,7 +147,7 @@ pub(crate) fn remember<L: Lane, const NC: usize>(
 }
 
 struct Remember<'a, L: Lane, const NC: usize> {
-    signals: &'a mut Signals<L, NC>,
+    signals: &'a mut ExogenousInputs<L, NC>,
     step: u32,
     wanted: &'a [L; NC],
     motion: &'a [[L; NC]; 2],
@@ -168,7 +168,7 @@ impl<L: Lane, const NC: usize> Kernel for Remember<'_, L, NC> {
 /// Moves what follows a law of its own from a step to the next.
 #[inline(always)]
 pub(crate) fn end_step<L: Lane, const NC: usize>(
-    signals: &mut Signals<L, NC>,
+    signals: &mut ExogenousInputs<L, NC>,
     step: u32,
     seed: u64,
     episodes: &[u32; MAX_WIDTH],
@@ -184,7 +184,7 @@ pub(crate) fn end_step<L: Lane, const NC: usize>(
 }
 
 struct EndStep<'a, L: Lane, const NC: usize> {
-    signals: &'a mut Signals<L, NC>,
+    signals: &'a mut ExogenousInputs<L, NC>,
     step: u32,
     seed: u64,
     episodes: &'a [u32; MAX_WIDTH],

@@ -16,16 +16,16 @@ pub(crate) mod vortex;
 pub(crate) mod window;
 
 use super::lanes::{Lane, MAX_WIDTH, Real};
-use delay_line::{Actuator, Moment, Ring};
+use delay_line::{Actuator, DelayLine, Moment};
 use kernels::distortion;
 use noise::{Noise, Turbulence};
-use window::{Burst, Switch};
+use window::{IntermittentWindow, Window};
 
 /// A periodic signal; its list says of what shape.
 #[derive(Clone, Copy)]
-pub(crate) struct Wave<L: Lane> {
+pub(crate) struct Oscillation<L: Lane> {
     /// Amplitude, while it is there.
-    pub(crate) switch: Switch<L>,
+    pub(crate) switch: Window<L>,
     /// 1 / smoothing of a square; nothing to the others.
     pub(crate) inverse_smoothing: L,
     pub(crate) phase: L::Turns,
@@ -38,7 +38,7 @@ pub(crate) struct Wave<L: Lane> {
 /// Everything that acts on one agent's channels from outside. Each list has an item per campaign entry that strikes these
 /// channels, so what a campaign does not use is not there.
 #[derive(Clone)]
-pub(crate) struct Signals<L: Lane, const NC: usize> {
+pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
     /// Scale of the ground's reaction: the sum of all that the campaign names.
     pub(crate) ground: [L; NC],
     /// The part of d1 that is always there.
@@ -51,48 +51,48 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     pub(crate) rises: bool,
 
     /// Lost shares of the command.
-    pub(crate) losses: Vec<[Switch<L>; NC]>,
+    pub(crate) losses: Vec<[Window<L>; NC]>,
     /// Commands that replace the wanted one.
-    pub(crate) hard_overs: Vec<[Switch<L>; NC]>,
-    pub(crate) command_biases: Vec<[Switch<L>; NC]>,
+    pub(crate) hard_overs: Vec<[Window<L>; NC]>,
+    pub(crate) command_biases: Vec<[Window<L>; NC]>,
     /// Shares of the other agents' commands that leak in.
-    pub(crate) leaks: Vec<[Switch<L>; NC]>,
+    pub(crate) leaks: Vec<[Window<L>; NC]>,
     /// Largest changes of the command per step.
-    pub(crate) rate_limits: Vec<[Switch<L>; NC]>,
+    pub(crate) rate_limits: Vec<[Window<L>; NC]>,
     /// By what share x and x' are measured too large.
-    pub(crate) scales: Vec<[Switch<L>; NC]>,
-    pub(crate) sensor_biases: Vec<[Switch<L>; NC]>,
+    pub(crate) scales: Vec<[Window<L>; NC]>,
+    pub(crate) sensor_biases: Vec<[Window<L>; NC]>,
     /// By what share of its first value the inertia grows.
-    pub(crate) inertias: Vec<[Switch<L>; NC]>,
+    pub(crate) inertias: Vec<[Window<L>; NC]>,
     /// Forces that come with a shifted mass.
-    pub(crate) weights: Vec<[Switch<L>; NC]>,
+    pub(crate) weights: Vec<[Window<L>; NC]>,
 
     /// Lost shares of the command, now and then.
-    pub(crate) intermittents: Vec<Burst<L, NC>>,
+    pub(crate) intermittents: Vec<IntermittentWindow<L, NC>>,
     /// When the link brings no new command (the value is 1).
-    pub(crate) command_holds: Vec<Burst<L, NC>>,
+    pub(crate) command_holds: Vec<IntermittentWindow<L, NC>>,
     /// When the measurement stays what it was (the value is 1).
-    pub(crate) sensor_holds: Vec<Burst<L, NC>>,
+    pub(crate) sensor_holds: Vec<IntermittentWindow<L, NC>>,
     /// Sizes of measurements that are far off.
-    pub(crate) outliers: Vec<Burst<L, NC>>,
+    pub(crate) outliers: Vec<IntermittentWindow<L, NC>>,
 
     pub(crate) noises: Vec<Noise<L, NC>>,
     pub(crate) turbulences: Vec<Turbulence<L, NC>>,
 
     /// amplitude sin(phase), part of d1.
-    pub(crate) sines: Vec<[Wave<L>; NC]>,
+    pub(crate) sines: Vec<[Oscillation<L>; NC]>,
     /// amplitude (1 + sin(phase)) / 2, part of d1; one turn of it is a gust, if it begins at the bottom.
-    pub(crate) gusts: Vec<[Wave<L>; NC]>,
+    pub(crate) gusts: Vec<[Oscillation<L>; NC]>,
     /// amplitude sin(phase), added to the command.
-    pub(crate) command_waves: Vec<[Wave<L>; NC]>,
+    pub(crate) command_waves: Vec<[Oscillation<L>; NC]>,
     /// amplitude sin(phase), part of f2.
-    pub(crate) sensor_waves: Vec<[Wave<L>; NC]>,
+    pub(crate) sensor_waves: Vec<[Oscillation<L>; NC]>,
     /// amplitude tanh(sin(phase) / smoothing), part of f2.
-    pub(crate) squares: Vec<[Wave<L>; NC]>,
+    pub(crate) squares: Vec<[Oscillation<L>; NC]>,
 
-    pub(crate) command_rings: Vec<Ring<L, NC, 1>>,
+    pub(crate) command_rings: Vec<DelayLine<L, NC, 1>>,
     /// Of x and x'.
-    pub(crate) sensor_rings: Vec<Ring<L, NC, 2>>,
+    pub(crate) sensor_rings: Vec<DelayLine<L, NC, 2>>,
 
     /// What of d1 and of f2 is held over this step.
     pub(crate) held_disturbance: [L; NC],
@@ -125,7 +125,7 @@ pub(crate) struct Signals<L: Lane, const NC: usize> {
     pub(crate) actuator: Actuator<L, NC>,
 }
 
-impl<L: Lane, const NC: usize> Signals<L, NC> {
+impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
     /// No signal at all.
     pub(crate) fn none() -> Self {
         let (zero, one) = ([L::number(0.0); NC], [L::number(1.0); NC]);
@@ -404,7 +404,7 @@ impl<L: Lane, const NC: usize> Signals<L, NC> {
 
 /// The sine of a wave's phase, half a step later if it is to `advance`.
 #[inline(always)]
-pub(crate) fn turned<L: Lane>(wave: &mut Wave<L>, advance: bool) -> L {
+pub(crate) fn turned<L: Lane>(wave: &mut Oscillation<L>, advance: bool) -> L {
     if advance {
         wave.phase = L::turns_add(wave.phase, wave.advance);
     }

@@ -1,6 +1,6 @@
 //! What is random in every step: the noise of a sensor, and turbulence, which is noise through a filter.
 
-use super::window::Switch;
+use super::window::Window;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::random::philox::{Address, Stream};
 
@@ -12,7 +12,7 @@ pub(crate) struct Noise<L, const NC: usize> {
     /// Address of each channel.
     pub(crate) members: [u32; NC],
     /// Standard deviation, while there is noise.
-    pub(crate) switch: [Switch<L>; NC],
+    pub(crate) switch: [Window<L>; NC],
     /// The samples of four steps: one counter gives them all.
     pub(crate) samples: [[L; 4]; NC],
 }

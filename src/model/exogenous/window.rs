@@ -8,7 +8,7 @@ use crate::random::philox::{Address, Stream};
 
 /// A value that is there for a while.
 #[derive(Clone, Copy)]
-pub(crate) struct Switch<L> {
+pub(crate) struct Window<L> {
     /// First step; infinite if it never comes.
     pub(crate) onset: L,
     /// First step after it; infinite if it stays.
@@ -21,7 +21,7 @@ pub(crate) struct Switch<L> {
 
 /// A fault that is there now and then: time from its onset on is cut into slots, and each is hit with a probability.
 #[derive(Clone)]
-pub(crate) struct Burst<L, const NC: usize> {
+pub(crate) struct IntermittentWindow<L, const NC: usize> {
     /// Which fault of the campaign.
     pub(crate) entry: u32,
     /// Whether all channels of an agent are hit together.
@@ -29,14 +29,14 @@ pub(crate) struct Burst<L, const NC: usize> {
     /// Address of each channel; one for all where they are hit together.
     pub(crate) members: [u32; NC],
     /// The value, between onset and end.
-    pub(crate) switch: [Switch<L>; NC],
+    pub(crate) switch: [Window<L>; NC],
     /// Steps of a slot, of each lane.
     pub(crate) slot_steps: [[u32; MAX_WIDTH]; NC],
     /// A slot is hit if its random word does not exceed this.
     pub(crate) threshold: [[u32; MAX_WIDTH]; NC],
 }
 
-impl<L: Lane> Switch<L> {
+impl<L: Lane> Window<L> {
     /// A value that is always there.
     pub(crate) fn always(value: L) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl<L: Lane> Switch<L> {
     }
 }
 
-impl<L: Lane, const NC: usize> Burst<L, NC> {
+impl<L: Lane, const NC: usize> IntermittentWindow<L, NC> {
     /// What is there of a channel's value at step number `step`, and 1 or -1 by the toss of a coin for each slot.
     #[inline(always)]
     pub(crate) fn at(
@@ -82,7 +82,7 @@ impl<L: Lane, const NC: usize> Burst<L, NC> {
             let since = step.wrapping_sub(onset_step(onsets[lane]));
             let address = Address {
                 episode: episodes[lane],
-                stream: Stream::Burst,
+                stream: Stream::IntermittentWindow,
                 entry: self.entry,
                 member: self.members[channel],
                 index: since / self.slot_steps[channel][lane],

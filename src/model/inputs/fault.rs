@@ -1,20 +1,20 @@
 //! From the draws of a fault to what it does to an agent's channels: the one place that says what each kind means.
 
-use super::{Block, Entries};
+use super::{LaneBlock, Selection};
 use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
 use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link};
 use crate::draw::{AgentDraw, FaultDraw, member};
-use crate::model::exogenous::delay_line::Ring;
+use crate::model::exogenous::delay_line::DelayLine;
 use crate::model::exogenous::noise::Noise;
-use crate::model::exogenous::window::{Burst, Switch};
-use crate::model::exogenous::{Signals, Wave};
+use crate::model::exogenous::window::{IntermittentWindow, Window};
+use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use std::f64::consts::TAU;
 
 /// A fault of one agent in the lanes of a block, and the channels from `first` on.
 #[derive(Clone, Copy)]
 pub(super) struct FaultLanes<'a> {
-    pub(super) block: &'a Block<'a>,
+    pub(super) block: &'a LaneBlock<'a>,
     pub(super) fault: &'a Fault,
     /// Which fault of the campaign.
     pub(super) index: usize,
@@ -33,13 +33,13 @@ impl FaultLanes<'_> {
     /// Adds what the fault does, if it may strike (or does) in some lane.
     pub(super) fn add<L: Lane, const NC: usize>(
         &self,
-        signals: &mut Signals<L, NC>,
-        entries: Entries,
+        signals: &mut ExogenousInputs<L, NC>,
+        entries: Selection,
     ) {
         let fault = self.fault;
         let listed = match entries {
-            Entries::Possible => may_strike(fault, self.first, NC),
-            Entries::Acting => (0..NC).any(|c| self.strikes::<L>(c)),
+            Selection::Possible => may_strike(fault, self.first, NC),
+            Selection::Acting => (0..NC).any(|c| self.strikes::<L>(c)),
         };
         if !listed {
             return;
@@ -93,11 +93,11 @@ impl FaultLanes<'_> {
                 if measured {
                     signals
                         .sensor_rings
-                        .push(Ring::new(records, switches, lengths));
+                        .push(DelayLine::new(records, switches, lengths));
                 } else {
                     signals
                         .command_rings
-                        .push(Ring::new(records, switches, lengths));
+                        .push(DelayLine::new(records, switches, lengths));
                 }
             }
             FaultKind::Scale => signals.scales.push(self.switches(&|c| value(0, c))),
@@ -158,7 +158,7 @@ impl FaultLanes<'_> {
     }
 
     /// A value from the fault's onset to its end, along its ramp.
-    fn switch<L: Lane>(&self, c: usize, value: [f64; MAX_WIDTH]) -> Switch<L> {
+    fn switch<L: Lane>(&self, c: usize, value: [f64; MAX_WIDTH]) -> Window<L> {
         let time = self.block.campaign.time;
         let struck = |pick: &dyn Fn(&FaultDraw) -> f64| -> L {
             let of_lanes = self.lanes::<L>(&|draw| {
@@ -175,7 +175,7 @@ impl FaultLanes<'_> {
             _ if draw.ramp_s > 0.0 => time.whole_steps(draw.ramp_s),
             _ => 1.0,
         };
-        Switch {
+        Window {
             onset: struck(&|draw| f64::from(time.onset_step(draw.onset_s))),
             end: struck(&|draw| {
                 if draw.duration_s.is_finite() {
@@ -192,7 +192,7 @@ impl FaultLanes<'_> {
     fn switches<L: Lane, const NC: usize>(
         &self,
         value: &dyn Fn(usize) -> [f64; MAX_WIDTH],
-    ) -> [Switch<L>; NC] {
+    ) -> [Window<L>; NC] {
         std::array::from_fn(|c| self.switch(c, value(c)))
     }
 
@@ -234,9 +234,9 @@ impl FaultLanes<'_> {
         value: &dyn Fn(usize) -> [f64; MAX_WIDTH],
         slot_s: Option<usize>,
         share: Option<usize>,
-    ) -> Burst<L, NC> {
+    ) -> IntermittentWindow<L, NC> {
         let time = self.block.campaign.time;
-        Burst {
+        IntermittentWindow {
             entry: self.entry(),
             together: self.is_link(),
             members: self.members(),
@@ -262,8 +262,8 @@ impl FaultLanes<'_> {
         frequency_hz: &dyn Fn(usize) -> [f64; MAX_WIDTH],
         phase_rad: usize,
         smoothing: Option<usize>,
-    ) -> [Wave<L>; NC] {
-        std::array::from_fn(|c| Wave {
+    ) -> [Oscillation<L>; NC] {
+        std::array::from_fn(|c| Oscillation {
             switch: self.switch(c, self.values::<L>(0, c)),
             inverse_smoothing: match smoothing {
                 Some(smoothing) => L::load(&self.values::<L>(smoothing, c).map(f64::recip)),

@@ -2,12 +2,12 @@
 
 pub(crate) mod fault;
 
-use super::exogenous::delay_line::Ring;
+use super::exogenous::delay_line::DelayLine;
 use super::exogenous::dryden::{Dryden, at_rest};
 use super::exogenous::noise::{Filter, Turbulence};
 use super::exogenous::vortex::Vortex;
-use super::exogenous::window::Switch;
-use super::exogenous::{Signals, Wave};
+use super::exogenous::window::Window;
+use super::exogenous::{ExogenousInputs, Oscillation};
 use super::lanes::{Lane, MAX_WIDTH};
 use super::plant::uav::inertia;
 use crate::agent::{Agent, FIRST_ATTITUDE, HEIGHT};
@@ -19,16 +19,16 @@ use std::f64::consts::TAU;
 
 /// A block of episodes, one per lane; lanes without one repeat the last.
 #[derive(Clone, Copy)]
-pub(crate) struct Block<'a> {
+pub(crate) struct LaneBlock<'a> {
     pub(crate) campaign: &'a Campaign,
     pub(crate) episodes: &'a [Episode],
 }
 
 /// What the channels of one agent start from and meet.
-pub(crate) struct Condition<L: Lane, const NC: usize> {
+pub(crate) struct ChannelInputs<L: Lane, const NC: usize> {
     /// int e, e and e' at t = 0.
     pub(crate) initial: [[L; 3]; NC],
-    pub(crate) signals: Signals<L, NC>,
+    pub(crate) signals: ExogenousInputs<L, NC>,
     pub(crate) kappa: L,
     pub(crate) vortices: Vec<Vortex<L>>,
     /// The step of the first fault that does not begin with the run; infinite if there is none.
@@ -37,14 +37,14 @@ pub(crate) struct Condition<L: Lane, const NC: usize> {
 
 /// Which entries of the campaign get a signal.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Entries {
+pub(crate) enum Selection {
     /// Those that act on these channels in some lane of the block: the others would only cost time.
     Acting,
     /// Those that may act on these channels in some episode: the same list for every block of a campaign.
     Possible,
 }
 
-impl Block<'_> {
+impl LaneBlock<'_> {
     /// The episode numbers of the lanes.
     pub(crate) fn numbers(&self) -> [u32; MAX_WIDTH] {
         std::array::from_fn(|lane| self.episode(lane).index)
@@ -55,10 +55,10 @@ impl Block<'_> {
         &self,
         agent: usize,
         first: usize,
-        entries: Entries,
-    ) -> Condition<L, NC> {
+        entries: Selection,
+    ) -> ChannelInputs<L, NC> {
         let campaign = self.campaign;
-        let mut signals = Signals::none();
+        let mut signals = ExogenousInputs::none();
         signals.hold_steps = campaign.control.hold_steps;
         if campaign.control.delay_s.is_some() {
             signals.command_rings.push(self.control_delay(agent));
@@ -94,7 +94,7 @@ impl Block<'_> {
                 1.0 / (inertia[first + c] * scale)
             })
         });
-        Condition {
+        ChannelInputs {
             initial: std::array::from_fn(|c| {
                 [
                     channel(&|draw| draw.error_integral[first + c]),
@@ -139,19 +139,19 @@ impl Block<'_> {
 
     fn add_disturbance<L: Lane, const NC: usize>(
         &self,
-        signals: &mut Signals<L, NC>,
+        signals: &mut ExogenousInputs<L, NC>,
         disturbance: &Disturbance,
         index: usize,
         agent: usize,
         first: usize,
-        entries: Entries,
+        entries: Selection,
     ) {
         let values = |parameter: usize, c: usize| {
             self.lanes::<L>(agent, |draw| draw.disturbances[index][parameter][first + c])
         };
         let acts = |force: &dyn Fn(usize) -> [f64; MAX_WIDTH]| {
             let acting = || (0..NC).any(|c| force(c).iter().any(|force| *force != 0.0));
-            entries == Entries::Possible || acting()
+            entries == Selection::Possible || acting()
         };
         match disturbance.kind {
             DisturbanceKind::Constant => {
@@ -165,8 +165,8 @@ impl Block<'_> {
                 }
             }
             DisturbanceKind::Sine if acts(&|c| values(0, c)) => {
-                signals.sines.push(std::array::from_fn(|c| Wave {
-                    switch: Switch::always(L::load(&values(0, c))),
+                signals.sines.push(std::array::from_fn(|c| Oscillation {
+                    switch: Window::always(L::load(&values(0, c))),
                     inverse_smoothing: L::number(0.0),
                     phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
                     advance: self
@@ -209,7 +209,7 @@ impl Block<'_> {
         &self,
         agent: usize,
         first: usize,
-        entries: Entries,
+        entries: Selection,
     ) -> Vec<Vortex<L>> {
         if first > 0 || NC <= HEIGHT {
             return Vec::new();
@@ -224,7 +224,7 @@ impl Block<'_> {
             };
             let force_n = of(0, |force_n| force_n);
             let acts = force_n.iter().any(|force_n| *force_n != 0.0);
-            (acts || entries == Entries::Possible).then(|| Vortex {
+            (acts || entries == Selection::Possible).then(|| Vortex {
                 force: L::load(&force_n),
                 inverse_radius: L::load(&of(1, f64::recip)),
                 inverse_length: L::load(&of(2, |length_m| 2.0 / length_m)),
@@ -239,7 +239,7 @@ impl Block<'_> {
         force_n: [f64; MAX_WIDTH],
         onset_s: [f64; MAX_WIDTH],
         duration_s: [f64; MAX_WIDTH],
-    ) -> Wave<L> {
+    ) -> Oscillation<L> {
         let time = self.campaign.time;
         let onsets = onset_s.map(|onset_s| f64::from(time.onset_step(onset_s)));
         let steps = duration_s.map(|duration_s| time.whole_steps(duration_s));
@@ -247,8 +247,8 @@ impl Block<'_> {
         let phases: [f64; MAX_WIDTH] =
             std::array::from_fn(|lane| -onsets[lane] / steps[lane] - 0.25);
         let ends: [f64; MAX_WIDTH] = std::array::from_fn(|lane| onsets[lane] + steps[lane]);
-        Wave {
-            switch: Switch {
+        Oscillation {
+            switch: Window {
                 onset: L::load(&onsets),
                 end: L::load(&ends),
                 inverse_ramp: L::number(1.0),
@@ -319,10 +319,10 @@ impl Block<'_> {
     }
 
     /// The delay of a control loop, which is there from the start to the end.
-    fn control_delay<L: Lane, const NC: usize>(&self, agent: usize) -> Ring<L, NC, 1> {
+    fn control_delay<L: Lane, const NC: usize>(&self, agent: usize) -> DelayLine<L, NC, 1> {
         let steps = |draw: &AgentDraw| self.campaign.time.whole_steps(draw.control_delay_s);
         let lengths = self.lanes::<L>(agent, steps).map(small);
-        Ring::new(true, [Switch::always(L::number(1.0)); NC], [lengths; NC])
+        DelayLine::new(true, [Window::always(L::number(1.0)); NC], [lengths; NC])
     }
 
     /// Turns per half step of frequencies in Hz.

@@ -19,6 +19,8 @@ pub const MAX_WIDTH: usize = 16;
 pub trait Real: Copy + Send + Sync + PartialOrd + Debug + Default + 'static {
     /// The largest finite value: what passes it is a divergence.
     const MAX: Self;
+    /// Whether this is the precision of the reference, in which alone some options are compiled.
+    const IS_REFERENCE: bool;
     /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
     /// The same value in double precision.
@@ -27,6 +29,7 @@ pub trait Real: Copy + Send + Sync + PartialOrd + Debug + Default + 'static {
 
 impl Real for f64 {
     const MAX: Self = f64::MAX;
+    const IS_REFERENCE: bool = true;
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
@@ -39,6 +42,7 @@ impl Real for f64 {
 
 impl Real for f32 {
     const MAX: Self = f32::MAX;
+    const IS_REFERENCE: bool = false;
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,

@@ -21,12 +21,12 @@ pub(crate) const fn leg_rows(cut: bool) -> usize {
 
 /// A leg; where `CUT`, its torques stay within the limits of the joints.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Leg<R, const CUT: bool> {
+pub(crate) struct LegPlant<R, const CUT: bool> {
     pub(crate) model: LegModel<R>,
     pub(crate) max_torque: [R; LEG_JOINTS],
 }
 
-impl<R: Real, const CUT: bool> Leg<R, CUT> {
+impl<R: Real, const CUT: bool> LegPlant<R, CUT> {
     /// The left or right leg (0, 1) of a robot.
     pub(crate) fn new(robot: &Robot, side: usize) -> Self {
         let joints = &robot.legs[side].joints;
@@ -61,7 +61,7 @@ pub(crate) fn plus_product<L: Lane>(
     sum
 }
 
-impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for Leg<L::Real, CUT> {
+impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for LegPlant<L::Real, CUT> {
     const LIMITED: bool = true;
     const ROWS: usize = leg_rows(CUT);
 

@@ -14,7 +14,7 @@ mod spline;
 use thiserror::Error;
 
 use curve::{Curve, PEAK_RATE, PEAK_RATE_CHANGE};
-use spline::{Leg, Vector, dot, norm, scale, subtract};
+use spline::{PathPiece, Vector, dot, norm, scale, subtract};
 
 /// Default step of the linear interpolation, m.
 ///
@@ -221,13 +221,13 @@ fn checked(name: &'static str, value: f64) -> Result<f64, PathError> {
     }
 }
 
-fn checked_legs(points: &[Vector]) -> Result<Vec<Leg>, PathError> {
+fn checked_legs(points: &[Vector]) -> Result<Vec<PathPiece>, PathError> {
     for (index, &point) in points.iter().enumerate() {
         if !point.iter().all(|x| x.abs() <= MAX_COORDINATE_M) {
             return Err(PathError::Coordinate { index, point });
         }
     }
-    let mut legs: Vec<Leg> = Vec::with_capacity(points.len());
+    let mut legs: Vec<PathPiece> = Vec::with_capacity(points.len());
     for (index, pair) in points.windows(2).enumerate() {
         let chord = subtract(pair[1], pair[0]);
         let length = norm(chord);
@@ -241,7 +241,7 @@ fn checked_legs(points: &[Vector]) -> Result<Vec<Leg>, PathError> {
         {
             return Err(PathError::TooSharp { index });
         }
-        legs.push(Leg {
+        legs.push(PathPiece {
             start: pair[0],
             direction,
             length,

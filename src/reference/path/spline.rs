@@ -16,7 +16,7 @@ const MAX_STEPS_PER_LEG: u32 = 1000;
 const ROUNDING_BIAS: f64 = 1e-6;
 
 /// Straight line between two waypoints, with its unit direction.
-pub(super) struct Leg {
+pub(super) struct PathPiece {
     pub(super) start: Vector,
     pub(super) direction: Vector,
     pub(super) length: f64,
@@ -70,7 +70,7 @@ impl Piece {
 /// Its second derivatives M solve, at every point with steps h and directions d before (-) and
 /// after (+) it, h₋ M₋ + 2 (h₋ + h₊) M + h₊ M₊ = 6 (d₊ - d₋). At the two ends the missing step
 /// has length zero and the missing direction is the chord's.
-pub(super) fn through(legs: &[Leg], step: f64) -> Vec<Piece> {
+pub(super) fn through(legs: &[PathPiece], step: f64) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = legs.iter().flat_map(|leg| divide(leg, step)).collect();
 
     // Thomas algorithm; the system is diagonally dominant. First M = offset - ratio M₊ ...
@@ -106,7 +106,7 @@ pub(super) fn through(legs: &[Leg], step: f64) -> Vec<Piece> {
 }
 
 /// Straight pieces of equal length, as near to `step` as possible.
-fn divide(leg: &Leg, step: f64) -> impl Iterator<Item = Piece> {
+fn divide(leg: &PathPiece, step: f64) -> impl Iterator<Item = Piece> {
     let steps = leg.length / step + ROUNDING_BIAS;
     let steps = steps.round().clamp(1.0, f64::from(MAX_STEPS_PER_LEG));
     let length = leg.length / steps;

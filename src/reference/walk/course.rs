@@ -124,13 +124,13 @@ impl Course {
 }
 
 /// A straight line between two waypoints.
-struct Leg {
+struct CoursePiece {
     start: [f64; 2],
     direction: [f64; 2],
     length: f64,
 }
 
-fn legs(waypoints: &[[f64; 2]]) -> Result<Vec<Leg>, WalkError> {
+fn legs(waypoints: &[[f64; 2]]) -> Result<Vec<CoursePiece>, WalkError> {
     let count = waypoints.len();
     if count < 2 {
         return Err(WalkError::TooFewWaypoints { count });
@@ -140,7 +140,7 @@ fn legs(waypoints: &[[f64; 2]]) -> Result<Vec<Leg>, WalkError> {
             return Err(WalkError::Waypoint { index, point_m });
         }
     }
-    let mut legs: Vec<Leg> = Vec::with_capacity(count);
+    let mut legs: Vec<CoursePiece> = Vec::with_capacity(count);
     for (index, pair) in waypoints.windows(2).enumerate() {
         let (dx, dy) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
         let length = dx.hypot(dy);
@@ -160,7 +160,7 @@ fn legs(waypoints: &[[f64; 2]]) -> Result<Vec<Leg>, WalkError> {
                 limit_deg: MAX_TURN_DEG,
             });
         }
-        legs.push(Leg {
+        legs.push(CoursePiece {
             start: pair[0],
             direction,
             length,
@@ -169,7 +169,7 @@ fn legs(waypoints: &[[f64; 2]]) -> Result<Vec<Leg>, WalkError> {
     Ok(legs)
 }
 
-fn curve(legs: &[Leg], step: f64) -> Spline<2> {
+fn curve(legs: &[CoursePiece], step: f64) -> Spline<2> {
     let mut points = Vec::new();
     let mut from = 0.0;
     for leg in legs {
@@ -184,7 +184,8 @@ fn curve(legs: &[Leg], step: f64) -> Spline<2> {
         points.pop();
         from += leg.length;
     }
-    let end = |leg: &Leg| std::array::from_fn(|i| leg.start[i] + leg.length * leg.direction[i]);
+    let end =
+        |leg: &CoursePiece| std::array::from_fn(|i| leg.start[i] + leg.length * leg.direction[i]);
     points.extend(legs.last().map(|leg| (from, end(leg))));
     let slopes = [legs.first(), legs.last()].map(|leg| leg.map_or([0.0; 2], |leg| leg.direction));
     Spline::clamped(points, slopes)

@@ -1,12 +1,12 @@
 //! What a channel showed over time: errors, states, faults, commands (the paper's Figures 11 to 20).
 
-use super::episode_data::{Flight, Scene};
+use super::episode_data::{ControllerTrace, EpisodeView};
 use super::frame::Frame;
 use crate::agent::ActuationKind;
 use crate::agent::{Agent, FIRST_ATTITUDE};
-use crate::model::Shown;
-use crate::report::page::document::{Figure, Key};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
+use crate::model::ChannelSample;
+use crate::report::page::document::{Figure, LegendEntry};
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::util::format::sentence;
 
 /// Room around the values that are no peaks, in units of their range.
@@ -65,7 +65,7 @@ impl Quantity {
     }
 
     /// What each controller made of it.
-    fn flown(self) -> fn(&Shown) -> f64 {
+    fn flown(self) -> fn(&ChannelSample) -> f64 {
         match self {
             Self::Error => |shown| shown.e,
             Self::State => |shown| shown.x,
@@ -76,7 +76,7 @@ impl Quantity {
     }
 
     /// What the flight is compared with.
-    fn truth(self) -> Option<fn(&Shown) -> f64> {
+    fn truth(self) -> Option<fn(&ChannelSample) -> f64> {
         match self {
             Self::State => Some(|shown| shown.r),
             Self::ActuatorFault => Some(|shown| shown.f1),
@@ -86,7 +86,7 @@ impl Quantity {
     }
 
     /// What the controller took it for.
-    fn estimate(self) -> Option<fn(&Shown) -> f64> {
+    fn estimate(self) -> Option<fn(&ChannelSample) -> f64> {
         match self {
             Self::Error => Some(|shown| shown.e_hat),
             Self::State => Some(|shown| shown.r + shown.e_hat),
@@ -102,20 +102,23 @@ impl Quantity {
 
 /// A channel's quantity in one or several flights. The frame is the same whichever flights are shown.
 pub(super) fn panel(
-    scene: &Scene<'_>,
+    scene: &EpisodeView<'_>,
     quantity: Quantity,
     at: (usize, usize),
-    shown: &[Flight<'_>],
-) -> (Panel, bool) {
+    shown: &[ControllerTrace<'_>],
+) -> (Plot, bool) {
     let (agent, channel) = at;
     let frame = frame(scene, quantity, at);
     let mut marks = Vec::new();
-    let mut draw = |flight: &Flight<'_>, pick: fn(&Shown) -> f64, ink: Ink, stroke: Stroke| {
+    let mut draw = |flight: &ControllerTrace<'_>,
+                    pick: fn(&ChannelSample) -> f64,
+                    ink: Color,
+                    stroke: Stroke| {
         let Some(frame) = frame else {
             return;
         };
         let mut curve = scene.curve(flight, at, pick);
-        if ink == Ink::Truth && quantity == Quantity::State {
+        if ink == Color::Truth && quantity == Quantity::State {
             let left_s = scene.left_s(flight, agent);
             curve.retain(|&(t_s, _)| t_s < left_s);
         }
@@ -127,14 +130,18 @@ pub(super) fn panel(
             .take(shown)
             .map(|&(t_s, value)| (t_s, frame.near(value)));
         let near: Vec<(f64, f64)> = near.collect();
-        marks.push(Mark::Line(Scene::thin(&near, frame.fine()), ink, stroke));
+        marks.push(Mark::Line(
+            EpisodeView::thin(&near, frame.fine()),
+            ink,
+            stroke,
+        ));
     };
     let truth_stroke = match quantity {
         Quantity::State => Stroke::Dashed,
         _ => Stroke::Solid,
     };
     if let (Some(truth), Some(first)) = (quantity.truth(), shown.first()) {
-        draw(first, truth, Ink::Truth, truth_stroke);
+        draw(first, truth, Color::Truth, truth_stroke);
     }
     // The first is drawn last, above the others.
     for flight in shown.iter().rev() {
@@ -154,7 +161,7 @@ pub(super) fn panel(
         Some((t_s, flight.ink()))
     });
     let name = &scene.campaign.channels()[channel];
-    let panel = Panel {
+    let panel = Plot {
         title: name.to_string(),
         x: Axis {
             range: Some((0.0, scene.duration_s)),
@@ -168,13 +175,13 @@ pub(super) fn panel(
         spans: scene.windows(agent, channel),
         levels: limits(scene, quantity, channel),
         moments: failed.collect(),
-        ..Panel::default()
+        ..Plot::default()
     };
     (panel, frame.is_some_and(|frame| frame.cut))
 }
 
 /// The frame of a channel's quantity: what every flight showed of it, and its limits.
-fn frame(scene: &Scene<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Frame> {
+fn frame(scene: &EpisodeView<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Frame> {
     let mut values = Vec::new();
     for flight in &scene.flights {
         let until_s = scene.until_s(flight, at.0);
@@ -198,7 +205,7 @@ fn frame(scene: &Scene<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Fr
 }
 
 /// The limits of a command, where they cut.
-fn limits(scene: &Scene<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
+fn limits(scene: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
     let both = |limit: f64| vec![-limit, limit];
     match (&scene.campaign.agent, quantity) {
         (_, quantity) if quantity != Quantity::Command => Vec::new(),
@@ -216,19 +223,19 @@ fn limits(scene: &Scene<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
 }
 
 /// An agent's quantity, a panel for each channel.
-pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Figure {
+pub(super) fn figure(scene: &EpisodeView<'_>, quantity: Quantity, agent: usize) -> Figure {
     let channels = 0..scene.campaign.channels().len();
-    let drawn: Vec<(Panel, bool)> = channels
+    let drawn: Vec<(Plot, bool)> = channels
         .map(|channel| panel(scene, quantity, (agent, channel), &scene.flights))
         .collect();
     let cut = drawn.iter().any(|(_, cut)| *cut);
     let asked = scene.asked();
     let mut legend = Vec::new();
     match quantity {
-        Quantity::State => legend.push(Key::dashes(Ink::Truth, "reference r")),
+        Quantity::State => legend.push(LegendEntry::dashes(Color::Truth, "reference r")),
         Quantity::ActuatorFault | Quantity::SensorFault => {
-            legend.push(Key::line(
-                Ink::Truth,
+            legend.push(LegendEntry::line(
+                Color::Truth,
                 format!("{} under {}", quantity.symbol(), asked.name),
             ));
         }
@@ -241,24 +248,27 @@ pub(super) fn figure(scene: &Scene<'_>, quantity: Quantity, agent: usize) -> Fig
         });
         match quantity.is_fault() {
             true if estimates => {
-                legend.push(Key::line(
+                legend.push(LegendEntry::line(
                     flight.ink(),
                     format!("estimate of {}", flight.name),
                 ));
             }
             true => {}
-            false => legend.push(Key::line(flight.ink(), flight.name)),
+            false => legend.push(LegendEntry::line(flight.ink(), flight.name)),
         }
     }
     if quantity.estimate().is_some() {
         let text = format!("estimate of {}", asked.name);
-        legend.push(Key::dashes(scene.estimate_ink(), text));
+        legend.push(LegendEntry::dashes(scene.estimate_ink(), text));
     }
     if drawn.iter().any(|(panel, _)| !panel.spans.is_empty()) {
-        legend.push(Key::shade(Ink::Fault, "a fault strikes the channel"));
+        legend.push(LegendEntry::shade(
+            Color::Fault,
+            "a fault strikes the channel",
+        ));
     }
     if drawn.iter().any(|(panel, _)| !panel.levels.is_empty()) {
-        legend.push(Key::line(Ink::Limit, "limit"));
+        legend.push(LegendEntry::line(Color::Limit, "limit"));
     }
     let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
     let mut caption = sentence(quantity.name());

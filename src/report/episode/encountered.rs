@@ -1,6 +1,6 @@
 //! What an episode met: faults, disturbances and the rest of its draw.
 
-use super::episode_data::Scene;
+use super::episode_data::EpisodeView;
 use crate::campaign::Link;
 use crate::draw::AgentDraw;
 use crate::report::page::document::{Block, Cell, Grid, Section};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 const MOST_LISTED: usize = 3;
 
 /// The draw of the episode.
-pub(super) fn section(scene: &Scene<'_>) -> Section {
+pub(super) fn section(scene: &EpisodeView<'_>) -> Section {
     let mut blocks = vec![faults(scene)];
     if !scene.campaign.disturbances.is_empty() {
         let summary = match scene.campaign.disturbances.len() {
@@ -25,7 +25,7 @@ pub(super) fn section(scene: &Scene<'_>) -> Section {
     Section::new("What it met", blocks)
 }
 
-fn faults(scene: &Scene<'_>) -> Block {
+fn faults(scene: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new([
         "agent",
         "fault",
@@ -98,7 +98,7 @@ fn faults(scene: &Scene<'_>) -> Block {
     }
 }
 
-fn disturbances(scene: &Scene<'_>) -> Block {
+fn disturbances(scene: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new(["agent", "disturbance", "parameters"]);
     for (agent, draw) in scene.episode.agents.iter().enumerate() {
         for (disturbance, drawn) in scene.campaign.disturbances.iter().zip(&draw.disturbances) {
@@ -125,7 +125,7 @@ fn disturbances(scene: &Scene<'_>) -> Block {
     Block::Grid(grid)
 }
 
-fn conditions(scene: &Scene<'_>) -> Block {
+fn conditions(scene: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new([
         "agent",
         "true over modelled mass",

@@ -2,9 +2,9 @@
 
 use crate::campaign::Campaign;
 use crate::draw::{Episode, FaultDraw, draw};
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
-use crate::report::page::plot::{Ink, thinned};
+use crate::report::page::plot::{Color, thinned};
 use crate::results::tables::{Status, status};
 use crate::run::replay::Replay;
 use std::cmp::Ordering;
@@ -14,7 +14,7 @@ const POINTS: usize = 400;
 
 /// A flight of the episode.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flight<'a> {
+pub(super) struct ControllerTrace<'a> {
     /// Which of the campaign's controllers.
     pub(super) controller: usize,
     pub(super) name: &'a str,
@@ -22,28 +22,28 @@ pub(super) struct Flight<'a> {
     pub(super) snapshots: &'a [Snapshot],
 }
 
-impl Flight<'_> {
+impl ControllerTrace<'_> {
     /// The colour of its controller, as in the report.
-    pub(super) fn ink(&self) -> Ink {
-        Ink::Series(self.controller)
+    pub(super) fn ink(&self) -> Color {
+        Color::Series(self.controller)
     }
 }
 
 /// An episode.
-pub(super) struct Scene<'a> {
+pub(super) struct EpisodeView<'a> {
     pub(super) replay: &'a Replay,
     pub(super) campaign: &'a Campaign,
     /// What it drew.
     pub(super) episode: Episode,
     /// The flights, that of the controller that was asked for first.
-    pub(super) flights: Vec<Flight<'a>>,
+    pub(super) flights: Vec<ControllerTrace<'a>>,
     pub(super) duration_s: f64,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> EpisodeView<'a> {
     pub(super) fn new(replay: &'a Replay) -> Self {
         let campaign = &replay.campaign;
-        let flight = |controller: usize, outcomes, snapshots| Flight {
+        let flight = |controller: usize, outcomes, snapshots| ControllerTrace {
             controller,
             name: &campaign.controllers[controller],
             outcomes,
@@ -64,18 +64,18 @@ impl<'a> Scene<'a> {
     }
 
     /// The flight under the controller that was asked for.
-    pub(super) fn asked(&self) -> &Flight<'a> {
+    pub(super) fn asked(&self) -> &ControllerTrace<'a> {
         &self.flights[0]
     }
 
     /// The flights under the others.
-    pub(super) fn others(&self) -> impl Iterator<Item = &Flight<'a>> {
+    pub(super) fn others(&self) -> impl Iterator<Item = &ControllerTrace<'a>> {
         self.flights[1..].iter()
     }
 
     /// The colour of an estimate: that of none of the controllers.
-    pub(super) fn estimate_ink(&self) -> Ink {
-        Ink::Series(self.campaign.controllers.len().max(3))
+    pub(super) fn estimate_ink(&self) -> Color {
+        Color::Series(self.campaign.controllers.len().max(3))
     }
 
     /// Whether inequality (24) bounds the errors of a channel under the controller that was asked for.
@@ -89,14 +89,14 @@ impl<'a> Scene<'a> {
     }
 
     /// When an agent broke max_error or left the numbers, s.
-    pub(super) fn failed_at_s(&self, flight: &Flight<'_>, agent: usize) -> Option<f64> {
+    pub(super) fn failed_at_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> Option<f64> {
         let outcome = &flight.outcomes[agent];
         let step = outcome.failed_step?;
         Some(f64::from(step) * self.campaign.time.step_s)
     }
 
     /// Until when what an agent did belongs into a frame, s: one that diverges leaves every frame after it failed.
-    pub(super) fn until_s(&self, flight: &Flight<'_>, agent: usize) -> f64 {
+    pub(super) fn until_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> f64 {
         match flight.outcomes[agent].diverged {
             true => self.failed_at_s(flight, agent).unwrap_or(f64::INFINITY),
             false => f64::INFINITY,
@@ -104,7 +104,7 @@ impl<'a> Scene<'a> {
     }
 
     /// When an agent left the numbers, s; after that its reference stands still, too.
-    pub(super) fn left_s(&self, flight: &Flight<'_>, agent: usize) -> f64 {
+    pub(super) fn left_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> f64 {
         let gone = |snapshot: &&Snapshot| {
             let channels = snapshot.agents.get(agent).into_iter().flatten();
             channels.into_iter().any(|shown| !shown.x.is_finite())
@@ -119,9 +119,9 @@ impl<'a> Scene<'a> {
     /// What a channel showed over time.
     pub(super) fn curve(
         &self,
-        flight: &Flight<'_>,
+        flight: &ControllerTrace<'_>,
         (agent, channel): (usize, usize),
-        pick: fn(&Shown) -> f64,
+        pick: fn(&ChannelSample) -> f64,
     ) -> Vec<(f64, f64)> {
         let point = |snapshot: &Snapshot| {
             let shown = snapshot.agents.get(agent)?.get(channel)?;
@@ -147,7 +147,7 @@ impl<'a> Scene<'a> {
     /// that diverges, those until it is there after it failed.
     pub(super) fn shown(
         &self,
-        flight: &Flight<'_>,
+        flight: &ControllerTrace<'_>,
         agent: usize,
         is_outside: impl Fn(usize) -> bool,
     ) -> usize {

@@ -15,7 +15,7 @@ use crate::results::tables::{Status, status};
 use crate::run::replay::Replay;
 use crate::util::format::number;
 use curves::{Quantity, figure};
-use episode_data::{Flight, Scene};
+use episode_data::{ControllerTrace, EpisodeView};
 
 /// Channels of which all quantities are drawn; beyond it, those of the agent that fared worst, and the errors of the others.
 const MOST_IN_FULL: usize = 24;
@@ -34,14 +34,14 @@ pub struct Trace {
 /// Draws a replayed episode.
 #[must_use]
 pub fn trace(replay: &Replay) -> Trace {
-    let scene = Scene::new(replay);
+    let scene = EpisodeView::new(replay);
     Trace {
         html: html(&document(&scene)),
         svg: picture::svg(&scene),
     }
 }
 
-fn document(scene: &Scene<'_>) -> Document {
+fn document(scene: &EpisodeView<'_>) -> Document {
     let campaign = scene.campaign;
     let asked = scene.asked();
     let mut sections = vec![errors(scene), encountered::section(scene)];
@@ -84,7 +84,7 @@ fn document(scene: &Scene<'_>) -> Document {
 }
 
 /// How a flight ended, in a sentence.
-fn ending(scene: &Scene<'_>, flight: &Flight<'_>) -> String {
+fn ending(scene: &EpisodeView<'_>, flight: &ControllerTrace<'_>) -> String {
     let failed: Vec<String> = (0..scene.campaign.team)
         .filter_map(|agent| {
             let outcome = &flight.outcomes[agent];
@@ -112,7 +112,7 @@ fn ending(scene: &Scene<'_>, flight: &Flight<'_>) -> String {
 }
 
 /// The errors in numbers.
-fn errors(scene: &Scene<'_>) -> Section {
+fn errors(scene: &EpisodeView<'_>) -> Section {
     let worst = scene.worst_agent();
     let others: Vec<Block> = (0..scene.campaign.team)
         .filter(|&agent| agent != worst)
@@ -166,7 +166,7 @@ fn errors(scene: &Scene<'_>) -> Section {
     Section::new("Errors", blocks)
 }
 
-fn errors_of(scene: &Scene<'_>, agent: usize) -> Grid {
+fn errors_of(scene: &EpisodeView<'_>, agent: usize) -> Grid {
     let mut grid = Grid::new(["channel"]);
     let names = scene.flights.iter().map(|flight| flight.name.to_string());
     grid.head.extend(names);
@@ -202,7 +202,7 @@ fn errors_of(scene: &Scene<'_>, agent: usize) -> Grid {
 }
 
 /// The curves: those of the agent that fared worst, and then, folded, of the others.
-fn agents(scene: &Scene<'_>) -> Vec<Section> {
+fn agents(scene: &EpisodeView<'_>) -> Vec<Section> {
     let channels = scene.campaign.channels().len();
     let order = scene.worst_first();
     let in_full = channels * order.len() <= MOST_IN_FULL;

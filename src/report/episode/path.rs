@@ -1,10 +1,10 @@
 //! Where UAVs flew, from above and from the side (the paper's Figure 8).
 
-use super::episode_data::{Flight, Scene};
+use super::episode_data::{ControllerTrace, EpisodeView};
 use super::frame::Frame;
-use crate::model::Shown;
-use crate::report::page::document::{Block, Figure, Key, Section};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, SIZE, Stroke};
+use crate::model::ChannelSample;
+use crate::report::page::document::{Block, Figure, LegendEntry, Section};
+use crate::report::page::plot::{Axis, Color, Mark, Plot, SIZE, Stroke};
 
 /// Room around the values that are no peaks, in units of their range.
 const ROOM: f64 = 0.2;
@@ -17,7 +17,7 @@ const VIEWS: [(&str, [usize; 2], [&str; 2]); 2] = [
 ];
 
 /// The paths under every controller.
-pub(super) fn section(scene: &Scene<'_>) -> Section {
+pub(super) fn section(scene: &EpisodeView<'_>) -> Section {
     let mut cut = false;
     let frames = [0, 1, 2].map(|coordinate| frame(scene, coordinate));
     let mut panels = Vec::new();
@@ -30,12 +30,12 @@ pub(super) fn section(scene: &Scene<'_>) -> Section {
             panels.push(panel(scene, flight, (view, channels, labels), [across, up]));
         }
     }
-    let mut legend = vec![Key::dashes(Ink::Truth, "reference")];
+    let mut legend = vec![LegendEntry::dashes(Color::Truth, "reference")];
     legend.extend(
         scene
             .flights
             .iter()
-            .map(|flight| Key::line(flight.ink(), flight.name)),
+            .map(|flight| LegendEntry::line(flight.ink(), flight.name)),
     );
     let mut caption = format!(
         "Paths of all {}; a dot is where one begins.",
@@ -53,12 +53,12 @@ pub(super) fn section(scene: &Scene<'_>) -> Section {
 }
 
 /// The frame of a coordinate: of all references and of all flights until they diverged.
-fn frame(scene: &Scene<'_>, channel: usize) -> Option<Frame> {
+fn frame(scene: &EpisodeView<'_>, channel: usize) -> Option<Frame> {
     let mut values = Vec::new();
     for flight in &scene.flights {
         for agent in 0..scene.campaign.team {
             let until_s = scene.until_s(flight, agent);
-            let picks: [fn(&Shown) -> f64; 2] = [|shown| shown.r, |shown| shown.x];
+            let picks: [fn(&ChannelSample) -> f64; 2] = [|shown| shown.r, |shown| shown.x];
             for pick in picks {
                 let curve = scene.curve(flight, (agent, channel), pick).into_iter();
                 let before = curve.filter(|&(t_s, _)| t_s <= until_s);
@@ -73,12 +73,12 @@ fn frame(scene: &Scene<'_>, channel: usize) -> Option<Frame> {
 }
 
 fn panel(
-    scene: &Scene<'_>,
-    flight: &Flight<'_>,
+    scene: &EpisodeView<'_>,
+    flight: &ControllerTrace<'_>,
     (view, channels, labels): (&str, [usize; 2], [&str; 2]),
     frames: [Frame; 2],
-) -> Panel {
-    let path = |agent: usize, pick: fn(&Shown) -> f64, until_s: f64| -> Vec<(f64, f64)> {
+) -> Plot {
+    let path = |agent: usize, pick: fn(&ChannelSample) -> f64, until_s: f64| -> Vec<(f64, f64)> {
         let [x, y] = channels.map(|channel| {
             let mut curve = scene.curve(flight, (agent, channel), pick);
             curve.retain(|&(t_s, _)| t_s <= until_s);
@@ -104,14 +104,14 @@ fn panel(
         let first = flown.first().copied();
         marks.push(Mark::Line(flown, flight.ink(), Stroke::Solid));
         let reference = path(agent, |shown| shown.r, scene.left_s(flight, agent));
-        marks.push(Mark::Line(reference, Ink::Truth, Stroke::Dashed));
+        marks.push(Mark::Line(reference, Color::Truth, Stroke::Dashed));
         marks.push(Mark::Dots(first.into_iter().collect(), flight.ink()));
     }
     let [x, y] = [0, 1].map(|k| Axis {
         range: Some(frames[k].range()),
         ..Axis::new(labels[k])
     });
-    Panel {
+    Plot {
         title: format!("{}, {view}", flight.name),
         x,
         y,
@@ -121,7 +121,7 @@ fn panel(
             frames[0].high - frames[0].low,
             frames[1].high - frames[1].low,
         )),
-        ..Panel::default()
+        ..Plot::default()
     }
 }
 

@@ -1,10 +1,10 @@
 //! The essential figures as one picture: a column for each controller, a row for each quantity.
 
 use super::curves::{Quantity, panel};
-use super::episode_data::Scene;
-use crate::report::page::document::Key;
-use crate::report::page::plot::Ink;
-use crate::report::page::plot_grid::poster;
+use super::episode_data::EpisodeView;
+use crate::report::page::document::LegendEntry;
+use crate::report::page::plot::Color;
+use crate::report::page::plot_grid::plot_grid;
 
 /// What the picture shows.
 const ROWS: [Quantity; 4] = [
@@ -14,7 +14,7 @@ const ROWS: [Quantity; 4] = [
     Quantity::Command,
 ];
 /// The agent that fared worst in the channel of its largest error.
-pub(super) fn svg(scene: &Scene<'_>) -> String {
+pub(super) fn svg(scene: &EpisodeView<'_>) -> String {
     let agent = scene.worst_agent();
     let (channel, _) = scene.error_of(agent);
     let (mut panels, mut cut) = (Vec::new(), false);
@@ -28,10 +28,10 @@ pub(super) fn svg(scene: &Scene<'_>) -> String {
     }
     let mut legend = legend(scene);
     if panels.iter().any(|panel| !panel.spans.is_empty()) {
-        legend.push(Key::shade(Ink::Fault, "a fault strikes"));
+        legend.push(LegendEntry::shade(Color::Fault, "a fault strikes"));
     }
     if panels.iter().any(|panel| !panel.levels.is_empty()) {
-        legend.push(Key::line(Ink::Limit, "limit"));
+        legend.push(LegendEntry::line(Color::Limit, "limit"));
     }
     let campaign = scene.campaign;
     let title = format!(
@@ -52,19 +52,19 @@ pub(super) fn svg(scene: &Scene<'_>) -> String {
             false => "",
         }
     );
-    poster(&title, &subtitle, &panels, scene.flights.len(), &legend)
+    plot_grid(&title, &subtitle, &panels, scene.flights.len(), &legend)
 }
 
 /// Colours and what they mean.
-fn legend(scene: &Scene<'_>) -> Vec<Key> {
+fn legend(scene: &EpisodeView<'_>) -> Vec<LegendEntry> {
     let flights = scene.flights.iter();
-    let mut legend: Vec<Key> = flights
-        .map(|flight| Key::line(flight.ink(), flight.name))
+    let mut legend: Vec<LegendEntry> = flights
+        .map(|flight| LegendEntry::line(flight.ink(), flight.name))
         .collect();
     legend.extend([
-        Key::dashes(scene.estimate_ink(), "estimate of e"),
-        Key::line(
-            Ink::Truth,
+        LegendEntry::dashes(scene.estimate_ink(), "estimate of e"),
+        LegendEntry::line(
+            Color::Truth,
             "f1, f2; their estimates in the colour of the controller",
         ),
     ]);

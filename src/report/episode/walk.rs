@@ -1,15 +1,15 @@
 //! How a robot was to walk, from above and from the side (the paper's Figure 10), and how it walked, as a stick figure.
 
-use super::episode_data::{Flight, Scene};
+use super::episode_data::{ControllerTrace, EpisodeView};
 use super::path::height;
 use crate::agent::robot::kinematics::{by_leg, leg_pose};
 use crate::agent::robot::{JOINTS, Robot};
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::Snapshot;
 use crate::reference::walk::{Ankle, Foot, Placement, Walk, zmp};
 use crate::reference::{AgentWalk, Reference};
-use crate::report::page::document::{Block, Figure, Key, Section};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
+use crate::report::page::document::{Block, Figure, LegendEntry, Section};
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use nalgebra::{Vector3, Vector6};
 
 /// Poses of a stick figure.
@@ -20,12 +20,12 @@ const APART_M: f64 = 0.35;
 const POINTS: usize = 300;
 
 /// Colours of the left and of the right leg: none of the first controllers'.
-const LEGS: [Ink; 2] = [Ink::Series(4), Ink::Series(3)];
-const COM: Ink = Ink::Series(5);
-const ZMP: Ink = Ink::Limit;
+const LEGS: [Color; 2] = [Color::Series(4), Color::Series(3)];
+const COM: Color = Color::Series(5);
+const ZMP: Color = Color::Limit;
 
 /// The walk of the robot that fared worst, and its stick figures.
-pub(super) fn section(scene: &Scene<'_>, robot: &Robot) -> Section {
+pub(super) fn section(scene: &EpisodeView<'_>, robot: &Robot) -> Section {
     let agent = scene.worst_agent();
     let mut blocks = Vec::new();
     let walk = match &scene.campaign.reference {
@@ -96,7 +96,11 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
     let path =
         |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> { every(&points, POINTS).copied().collect() };
     let (com, zmp): (Vec<_>, Vec<_>) = (com.collect(), zmp.collect());
-    above.push(Mark::Line(reference.collect(), Ink::Truth, Stroke::Dashed));
+    above.push(Mark::Line(
+        reference.collect(),
+        Color::Truth,
+        Stroke::Dashed,
+    ));
     above.push(Mark::Line(path(zmp.clone()), ZMP, Stroke::Solid));
     above.push(Mark::Line(path(com.clone()), COM, Stroke::Solid));
 
@@ -122,7 +126,7 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
         let reference = |&t_s: &f64| (t_s, walk.zmp_reference.at(t_s)[coordinate]);
         let reference = few.iter().map(reference).collect();
         vec![
-            Mark::Line(reference, Ink::Truth, Stroke::Dashed),
+            Mark::Line(reference, Color::Truth, Stroke::Dashed),
             Mark::Line(pick(&zmp), ZMP, Stroke::Solid),
             Mark::Line(pick(&com), COM, Stroke::Solid),
         ]
@@ -135,14 +139,14 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
         })
     };
     let [across, up] = [ends(|at| at[0]), ends(|at| at[1])].map(|(low, high)| high - low + 0.3);
-    let panel = |title: &str, labels: [&str; 2], marks: Vec<Mark>, equal: bool| Panel {
+    let panel = |title: &str, labels: [&str; 2], marks: Vec<Mark>, equal: bool| Plot {
         title: title.to_string(),
         x: Axis::new(labels[0]),
         y: Axis::new(labels[1]),
         marks,
         equal,
         height: equal.then(|| height(across, up)),
-        ..Panel::default()
+        ..Plot::default()
     };
     let time = "time since the walk began, s";
     Figure {
@@ -158,11 +162,11 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
             ),
         ],
         legend: vec![
-            Key::line(COM, "centre of mass"),
-            Key::line(ZMP, "zero moment point"),
-            Key::dashes(Ink::Truth, "reference of the zero moment point"),
-            Key::line(LEGS[0], "left foot"),
-            Key::line(LEGS[1], "right foot"),
+            LegendEntry::line(COM, "centre of mass"),
+            LegendEntry::line(ZMP, "zero moment point"),
+            LegendEntry::dashes(Color::Truth, "reference of the zero moment point"),
+            LegendEntry::line(LEGS[0], "left foot"),
+            LegendEntry::line(LEGS[1], "right foot"),
         ],
         caption: "The plan: footholds with the outlines of the soles, the centre of mass, the zero moment point of the pendulum \
                   and the one planned for."
@@ -171,20 +175,25 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
 }
 
 /// The outline of a sole at a foothold.
-fn sole(corners: &[[f64; 2]], at: Placement, ink: Ink) -> Mark {
+fn sole(corners: &[[f64; 2]], at: Placement, ink: Color) -> Mark {
     let closed = corners.iter().chain(corners.first());
     let outline = closed.map(|&corner| at.point(corner).into());
     Mark::Line(outline.collect(), ink, Stroke::Solid)
 }
 
 /// Poses of a robot over time under every controller, from the side.
-fn sticks(scene: &Scene<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWalk>) -> Figure {
+fn sticks(
+    scene: &EpisodeView<'_>,
+    robot: &Robot,
+    agent: usize,
+    walk: Option<&AgentWalk>,
+) -> Figure {
     let height_m = walk.map_or(robot.base_height_m, |own| own.walk.gait.pelvis_height_m);
     let panels = scene.flights.iter().map(|flight| {
         let (mut planned, mut flown) = (Vec::new(), Vec::new());
         for (k, snapshot) in instants(scene, flight, walk).into_iter().enumerate() {
             let ahead_m = APART_M * k as f64;
-            let pose = |pick: fn(&Shown) -> f64| {
+            let pose = |pick: fn(&ChannelSample) -> f64| {
                 let angles = std::array::from_fn(|joint| pick(&snapshot.agents[agent][joint]));
                 legs(robot, &angles).map(|leg| -> Vec<(f64, f64)> {
                     let point = |point: &Vector3<f64>| (ahead_m + point.x, height_m + point.z);
@@ -192,19 +201,19 @@ fn sticks(scene: &Scene<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWal
                 })
             };
             for leg in pose(|shown| shown.r) {
-                planned.push(Mark::Line(leg, Ink::Truth, Stroke::Dashed));
+                planned.push(Mark::Line(leg, Color::Truth, Stroke::Dashed));
             }
             let [left, right] = pose(|shown| shown.x);
             flown.push(Mark::Line(right, LEGS[1], Stroke::Solid));
             flown.push(Mark::Line(left, LEGS[0], Stroke::Solid));
         }
-        Panel {
+        Plot {
             title: flight.name.to_string(),
             x: Axis::new(format!("ahead, m; each pose {APART_M} m further")),
             y: Axis::new("height, m"),
             marks: planned.into_iter().chain(flown).collect(),
             equal: true,
-            ..Panel::default()
+            ..Plot::default()
         }
     });
     let times: Vec<String> = instants(scene, scene.asked(), walk)
@@ -214,9 +223,9 @@ fn sticks(scene: &Scene<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWal
     Figure {
         panels: panels.collect(),
         legend: vec![
-            Key::line(LEGS[0], "left leg"),
-            Key::line(LEGS[1], "right leg"),
-            Key::dashes(Ink::Truth, "reference"),
+            LegendEntry::line(LEGS[0], "left leg"),
+            LegendEntry::line(LEGS[1], "right leg"),
+            LegendEntry::dashes(Color::Truth, "reference"),
         ],
         caption: format!(
             "Agent {agent} from the side at t = {} s: each leg from the pelvis over hip, knee and ankle to heel and toe, at the \
@@ -229,8 +238,8 @@ fn sticks(scene: &Scene<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWal
 
 /// Snapshots spread evenly over the walk, or over the episode.
 fn instants<'a>(
-    scene: &Scene<'_>,
-    flight: &Flight<'a>,
+    scene: &EpisodeView<'_>,
+    flight: &ControllerTrace<'a>,
     walk: Option<&AgentWalk>,
 ) -> Vec<&'a Snapshot> {
     let walking = |snapshot: &&Snapshot| {

@@ -25,17 +25,17 @@ pub(crate) fn renumbered(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::renumbered;
-    use crate::report::page::plot::{Ink, Mark, Panel, Stroke};
+    use crate::report::page::plot::{Color, Mark, Plot, Stroke};
 
     #[test]
     fn the_same_page_has_the_same_bytes_whatever_was_drawn_before() {
-        let panel = Panel {
+        let panel = Plot {
             marks: vec![Mark::Line(
                 vec![(0.0, 1.0), (2.0, 3.0)],
-                Ink::Truth,
+                Color::Truth,
                 Stroke::Solid,
             )],
-            ..Panel::default()
+            ..Plot::default()
         };
         let page = || format!("<p>{}{}</p>", panel.svg(), panel.svg());
         let (first, second) = (page(), page());

@@ -1,6 +1,6 @@
 //! What a report says, apart from how it looks: the same blocks become HTML and Markdown.
 
-use super::plot::{Ink, Panel, Stroke};
+use super::plot::{Color, Plot, Stroke};
 use crate::util::format;
 
 /// A report.
@@ -94,7 +94,7 @@ impl Cell {
 pub(crate) struct Spread {
     pub(crate) value: f64,
     pub(crate) interval: Option<[f64; 2]>,
-    pub(crate) ink: Ink,
+    pub(crate) ink: Color,
     pub(crate) scale: Scale,
 }
 
@@ -138,16 +138,16 @@ impl Spread {
 /// Panels side by side that share a legend.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Figure {
-    pub(crate) panels: Vec<Panel>,
-    pub(crate) legend: Vec<Key>,
+    pub(crate) panels: Vec<Plot>,
+    pub(crate) legend: Vec<LegendEntry>,
     pub(crate) caption: String,
 }
 
 /// What a colour of a figure stands for.
 #[derive(Debug, Clone)]
-pub(crate) struct Key {
+pub(crate) struct LegendEntry {
     pub(crate) swatch: Swatch,
-    pub(crate) ink: Ink,
+    pub(crate) ink: Color,
     pub(crate) text: String,
 }
 
@@ -160,28 +160,28 @@ pub(crate) enum Swatch {
     Shade,
 }
 
-impl Key {
-    pub(crate) fn line(ink: Ink, text: impl Into<String>) -> Self {
+impl LegendEntry {
+    pub(crate) fn line(ink: Color, text: impl Into<String>) -> Self {
         Self::new(Swatch::Line, ink, text)
     }
 
-    pub(crate) fn dashes(ink: Ink, text: impl Into<String>) -> Self {
+    pub(crate) fn dashes(ink: Color, text: impl Into<String>) -> Self {
         Self::new(Swatch::Dashes, ink, text)
     }
 
-    pub(crate) fn shade(ink: Ink, text: impl Into<String>) -> Self {
+    pub(crate) fn shade(ink: Color, text: impl Into<String>) -> Self {
         Self::new(Swatch::Shade, ink, text)
     }
 
     /// The key of a line.
-    pub(crate) fn of(stroke: Stroke, ink: Ink, text: impl Into<String>) -> Self {
+    pub(crate) fn of(stroke: Stroke, ink: Color, text: impl Into<String>) -> Self {
         match stroke {
             Stroke::Dashed => Self::dashes(ink, text),
             Stroke::Solid | Stroke::Steps => Self::line(ink, text),
         }
     }
 
-    fn new(swatch: Swatch, ink: Ink, text: impl Into<String>) -> Self {
+    fn new(swatch: Swatch, ink: Color, text: impl Into<String>) -> Self {
         Self {
             swatch,
             ink,

@@ -4,7 +4,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::annotations::{ReferenceLine, ShadedRegion};
 use kuva::render::layout::{Layout, TickFormat};
-use kuva::render::plots::Plot;
+use kuva::render::plots::Plot as Layer;
 use kuva::render::render::render_multiple;
 use kuva::render::theme::Theme;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ const LETTER: f64 = 6.6;
 
 /// A colour by what it means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ink {
+pub(crate) enum Color {
     /// A controller, by its place in the campaign; or any other series that is one of several.
     Series(usize),
     /// What the others are compared with: a reference, the truth.
@@ -29,7 +29,7 @@ pub(crate) enum Ink {
     Fault,
 }
 
-impl Ink {
+impl Color {
     /// The colour in CSS.
     pub(crate) fn css(self) -> String {
         match self {
@@ -53,10 +53,10 @@ pub(crate) enum Stroke {
 /// What is drawn between the axes. Points that are not finite are left out, and interrupt a line.
 #[derive(Debug, Clone)]
 pub(crate) enum Mark {
-    Line(Vec<(f64, f64)>, Ink, Stroke),
+    Line(Vec<(f64, f64)>, Color, Stroke),
     /// Between two values at each x.
-    Band(Vec<(f64, f64, f64)>, Ink),
-    Dots(Vec<(f64, f64)>, Ink),
+    Band(Vec<(f64, f64, f64)>, Color),
+    Dots(Vec<(f64, f64)>, Color),
 }
 
 /// One axis.
@@ -80,7 +80,7 @@ impl Axis {
 
 /// A pair of axes with what is drawn between them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Panel {
+pub(crate) struct Plot {
     pub(crate) title: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -90,14 +90,14 @@ pub(crate) struct Panel {
     /// Values of y with a line across.
     pub(crate) levels: Vec<f64>,
     /// Values of x with a line down.
-    pub(crate) moments: Vec<(f64, Ink)>,
+    pub(crate) moments: Vec<(f64, Color)>,
     /// Whether a unit is as long along x as along y.
     pub(crate) equal: bool,
     /// Height, px; that of [`SIZE`] if not given.
     pub(crate) height: Option<f64>,
 }
 
-impl Panel {
+impl Plot {
     /// The drawing; of nothing but a sentence where no mark has a finite point.
     pub(crate) fn svg(&self) -> String {
         let (width, height) = self.size();
@@ -109,7 +109,7 @@ impl Panel {
             y_range = (y_range.0.min(level), y_range.1.max(level));
         }
         let (x_range, y_range) = (padded(x_range, &self.x), padded(y_range, &self.y));
-        let plots: Vec<Plot> = self
+        let plots: Vec<Layer> = self
             .marks
             .iter()
             .flat_map(|mark| self.plots(mark))
@@ -150,12 +150,12 @@ impl Panel {
         for &(from, to) in &self.spans {
             let (from, to) = (from.max(x_range.0), to.min(x_range.1));
             if from < to {
-                let span = ShadedRegion::vertical(from, to).with_color(Ink::Fault.css());
+                let span = ShadedRegion::vertical(from, to).with_color(Color::Fault.css());
                 layout = layout.with_shaded_region(span.with_opacity(0.16));
             }
         }
         for &level in self.levels.iter().filter(|level| level.is_finite()) {
-            let line = ReferenceLine::horizontal(level).with_color(Ink::Limit.css());
+            let line = ReferenceLine::horizontal(level).with_color(Color::Limit.css());
             layout = layout.with_reference_line(line);
         }
         for (moment, ink) in self.moments.iter().filter(|(moment, _)| moment.is_finite()) {
@@ -227,7 +227,7 @@ impl Panel {
         ends.map(|ends| axis.range.unwrap_or(ends))
     }
 
-    fn plots(&self, mark: &Mark) -> Vec<Plot> {
+    fn plots(&self, mark: &Mark) -> Vec<Layer> {
         match mark {
             Mark::Line(points, ink, stroke) => self
                 .pieces(points)
@@ -236,7 +236,7 @@ impl Panel {
                         .with_data(thinned(piece, MOST_POINTS))
                         .with_color(ink.css())
                         .with_stroke_width(1.6);
-                    Plot::Line(match stroke {
+                    Layer::Line(match stroke {
                         Stroke::Solid => line,
                         Stroke::Dashed => line.with_dashed(),
                         Stroke::Steps => line.with_step(),
@@ -259,7 +259,7 @@ impl Panel {
                     column(|point| point.1),
                     column(|point| point.2),
                 );
-                vec![Plot::Band(band.with_color(ink.css()).with_opacity(0.22))]
+                vec![Layer::Band(band.with_color(ink.css()).with_opacity(0.22))]
             }
             Mark::Dots(points, ink) => {
                 let finite: Vec<(f64, f64)> = self.pieces(points).flatten().copied().collect();
@@ -267,7 +267,7 @@ impl Panel {
                     return Vec::new();
                 }
                 let dots = ScatterPlot::new().with_data(finite).with_color(ink.css());
-                vec![Plot::Scatter(dots.with_size(3.0))]
+                vec![Layer::Scatter(dots.with_size(3.0))]
             }
         }
     }
@@ -463,17 +463,17 @@ mod tests {
 
     #[test]
     fn a_panel_without_finite_points_says_so_and_others_have_no_size_of_their_own() {
-        let of = |points: Vec<(f64, f64)>| Panel {
+        let of = |points: Vec<(f64, f64)>| Plot {
             title: "a < b".into(),
             x: Axis::new("time, s"),
             y: Axis::new("e, m"),
-            marks: vec![Mark::Line(points, Ink::Series(0), Stroke::Solid)],
-            ..Panel::default()
+            marks: vec![Mark::Line(points, Color::Series(0), Stroke::Solid)],
+            ..Plot::default()
         };
         let blank = of(vec![(f64::NAN, 1.0), (2.0, f64::INFINITY)]).svg();
         assert!(blank.contains("no finite values to show") && blank.contains("a &lt; b"));
         let drawn = of(vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 2.0)]).svg();
-        let high = Panel {
+        let high = Plot {
             height: Some(309.098),
             ..of(vec![(0.0, 1.0), (2.0, 3.0)])
         };

@@ -1,8 +1,8 @@
 //! Panels in one drawing that stands alone: a figure for a paper, or for a README.
 
 use super::clip_ids::renumbered;
-use super::document::{Key, Swatch};
-use super::plot::{Panel, SIZE, escaped};
+use super::document::{LegendEntry, Swatch};
+use super::plot::{Plot, SIZE, escaped};
 
 /// Height of title and explanation, px.
 const TITLE: f64 = 50.0;
@@ -14,12 +14,12 @@ const LETTER: f64 = 7.4;
 const COLOURS: &str = include_str!("colours.css");
 
 /// Panels in rows of so many, under a title and a line of explanation, with a legend.
-pub(crate) fn poster(
+pub(crate) fn plot_grid(
     title: &str,
     subtitle: &str,
-    panels: &[Panel],
+    panels: &[Plot],
     columns: usize,
-    legend: &[Key],
+    legend: &[LegendEntry],
 ) -> String {
     let columns = columns.clamp(1, panels.len().max(1));
     let rows = panels.len().div_ceil(columns);
@@ -50,10 +50,10 @@ pub(crate) fn poster(
 }
 
 /// The legend in as many lines as it takes, and where it ends, px.
-fn legend_of(legend: &[Key], width: f64) -> (String, f64) {
+fn legend_of(legend: &[LegendEntry], width: f64) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut y) = (20.0, TITLE + 0.5 * LINE);
-    for Key { swatch, ink, text } in legend {
+    for LegendEntry { swatch, ink, text } in legend {
         let own = 45.0 + LETTER * text.chars().count() as f64;
         if x > 20.0 && x + own > width {
             (x, y) = (20.0, y + LINE);

@@ -1,13 +1,13 @@
 //! The counterparts of the paper's figures.
 
 use super::PaperError;
-use super::flights::{Flights, Flown};
+use super::flights::{Scenario, Scenarios};
 use crate::campaign::Campaign;
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::reference::Reference;
-use crate::report::page::document::Key;
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
-use crate::report::page::plot_grid::poster;
+use crate::report::page::document::LegendEntry;
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::report::page::plot_grid::plot_grid;
 use std::path::Path;
 
 /// The campaign of Figure 8.
@@ -29,33 +29,33 @@ struct View {
     what: &'static str,
     lines: &'static [Line],
     unit: fn(&str) -> String,
-    flown: Flown,
+    flown: Scenario,
 }
 
 /// A line of a figure.
 struct Line {
     name: &'static str,
-    ink: Ink,
+    ink: Color,
     stroke: Stroke,
-    pick: fn(&Shown) -> f64,
+    pick: fn(&ChannelSample) -> f64,
 }
 
 const STATES: &[Line] = &[
     Line {
         name: "reference r",
-        ink: Ink::Truth,
+        ink: Color::Truth,
         stroke: Stroke::Dashed,
         pick: |shown| shown.r,
     },
     Line {
         name: "state x",
-        ink: Ink::Series(0),
+        ink: Color::Series(0),
         stroke: Stroke::Solid,
         pick: |shown| shown.x,
     },
     Line {
         name: "its estimate",
-        ink: Ink::Series(1),
+        ink: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.r + shown.e_hat,
     },
@@ -63,13 +63,13 @@ const STATES: &[Line] = &[
 const ACTUATOR_FAULT: &[Line] = &[
     Line {
         name: "actuator fault f1",
-        ink: Ink::Truth,
+        ink: Color::Truth,
         stroke: Stroke::Solid,
         pick: |shown| shown.f1,
     },
     Line {
         name: "its estimate",
-        ink: Ink::Series(1),
+        ink: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.f1_hat,
     },
@@ -77,20 +77,20 @@ const ACTUATOR_FAULT: &[Line] = &[
 const SENSOR_FAULT: &[Line] = &[
     Line {
         name: "sensor fault f2",
-        ink: Ink::Truth,
+        ink: Color::Truth,
         stroke: Stroke::Solid,
         pick: |shown| shown.f2,
     },
     Line {
         name: "its estimate",
-        ink: Ink::Series(1),
+        ink: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.f2_hat,
     },
 ];
 const CONTROL: &[Line] = &[Line {
     name: "control input u",
-    ink: Ink::Series(0),
+    ink: Color::Series(0),
     stroke: Stroke::Solid,
     pick: |shown| shown.u,
 }];
@@ -99,7 +99,7 @@ const CONTROL: &[Line] = &[Line {
 ///
 /// # Errors
 /// If the campaign of Figure 8 is none.
-pub(super) fn all(uavs: &Flights, robots: &Flights) -> Result<Vec<Figure>, PaperError> {
+pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, PaperError> {
     let length: fn(&str) -> String = |unit| unit.to_string();
     let acceleration: fn(&str) -> String = |unit| format!("{unit}/s²");
     let rate: fn(&str) -> String = |unit| format!("{unit}/s");
@@ -118,30 +118,30 @@ pub(super) fn all(uavs: &Flights, robots: &Flights) -> Result<Vec<Figure>, Paper
         flown,
     };
     let of_uavs = [
-        view(11, "states", STATES, length, Flown::Ftc),
+        view(11, "states", STATES, length, Scenario::Ftc),
         view(
             12,
             "actuator fault",
             ACTUATOR_FAULT,
             acceleration,
-            Flown::Ftc,
+            Scenario::Ftc,
         ),
-        view(13, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
-        view(14, "control input", CONTROL, effort, Flown::Ftc),
-        view(19, "states under the PID", STATES, length, Flown::Pid),
+        view(13, "sensor fault", SENSOR_FAULT, rate, Scenario::Ftc),
+        view(14, "control input", CONTROL, effort, Scenario::Ftc),
+        view(19, "states under the PID", STATES, length, Scenario::Pid),
     ];
     let of_robots = [
-        view(15, "states", STATES, length, Flown::Ftc),
+        view(15, "states", STATES, length, Scenario::Ftc),
         view(
             16,
             "actuator fault",
             ACTUATOR_FAULT,
             acceleration,
-            Flown::Ftc,
+            Scenario::Ftc,
         ),
-        view(17, "sensor fault", SENSOR_FAULT, rate, Flown::Ftc),
-        view(18, "control input", CONTROL, effort, Flown::Ftc),
-        view(20, "states under the PID", STATES, length, Flown::Pid),
+        view(17, "sensor fault", SENSOR_FAULT, rate, Scenario::Ftc),
+        view(18, "control input", CONTROL, effort, Scenario::Ftc),
+        view(20, "states under the PID", STATES, length, Scenario::Pid),
     ];
     let mut figures: Vec<(u32, Figure)> = Vec::new();
     for view in &of_uavs {
@@ -156,9 +156,9 @@ pub(super) fn all(uavs: &Flights, robots: &Flights) -> Result<Vec<Figure>, Paper
     Ok(figures.into_iter().map(|(_, figure)| figure).collect())
 }
 
-fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
+fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
     let campaign = &flights.campaign;
-    let panels: Vec<Panel> = campaign
+    let panels: Vec<Plot> = campaign
         .channels()
         .iter()
         .enumerate()
@@ -167,7 +167,7 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
                 let points = flights.series(view.flown, channel, line.pick);
                 Mark::Line(points.0, line.ink, line.stroke)
             });
-            Panel {
+            Plot {
                 title: name.to_string(),
                 x: Axis {
                     range: Some((0.0, flights.end_s())),
@@ -175,19 +175,19 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
                 },
                 y: Axis::new((view.unit)(campaign.unit(channel))),
                 marks: marks.collect(),
-                ..Panel::default()
+                ..Plot::default()
             }
         })
         .collect();
-    let legend: Vec<Key> = view
+    let legend: Vec<LegendEntry> = view
         .lines
         .iter()
-        .map(|line| Key::of(line.stroke, line.ink, line.name))
+        .map(|line| LegendEntry::of(line.stroke, line.ink, line.name))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
     let controller = match view.flown {
-        Flown::Pid => "PID",
-        Flown::Ftc | Flown::OnCourse => "FTC",
+        Scenario::Pid => "PID",
+        Scenario::Ftc | Scenario::OnCourse => "FTC",
     };
     let mut caption = format!("First {agent} of the team under the {controller}.");
     if let Some(lost_s) = flights.lost_s(view.flown) {
@@ -195,7 +195,7 @@ fn of_view(flights: &Flights, view: &View, agent: &str) -> Figure {
     }
     Figure {
         file: format!("figure-{:02}.svg", view.number),
-        svg: poster(&title, &caption, &panels, 3, &legend),
+        svg: plot_grid(&title, &caption, &panels, 3, &legend),
         title,
         caption,
     }
@@ -213,23 +213,23 @@ fn paths() -> Result<Figure, PaperError> {
                 axes.map(|axis| at.get(axis).map_or(f64::NAN, |point| point.value))
             });
             let points = points.map(|[a, b]| (a, b)).collect();
-            Mark::Line(points, Ink::Series(agent), Stroke::Solid)
+            Mark::Line(points, Color::Series(agent), Stroke::Solid)
         };
-        Panel {
+        Plot {
             title: title.into(),
             x: Axis::new(labels[0]),
             y: Axis::new(labels[1]),
             marks: (0..campaign.team).map(of_agent).collect(),
             equal: true,
-            ..Panel::default()
+            ..Plot::default()
         }
     };
     let panels = [
         view("from above", ["x, m", "y, m"], [0, 1]),
         view("from the side", ["x, m", "z, m"], [0, 2]),
     ];
-    let legend: Vec<Key> = (0..campaign.team)
-        .map(|agent| Key::line(Ink::Series(agent), format!("UAV {agent}")))
+    let legend: Vec<LegendEntry> = (0..campaign.team)
+        .map(|agent| LegendEntry::line(Color::Series(agent), format!("UAV {agent}")))
         .collect();
     let title = "Figure 8: planned flight".to_string();
     let caption =
@@ -237,14 +237,14 @@ fn paths() -> Result<Figure, PaperError> {
             .to_string();
     Ok(Figure {
         file: "figure-08.svg".into(),
-        svg: poster(&title, &caption, &panels, 2, &legend),
+        svg: plot_grid(&title, &caption, &panels, 2, &legend),
         title,
         caption,
     })
 }
 
 /// Figure 10: the planned walk of a robot from above.
-fn walk(robots: &Flights) -> Option<Figure> {
+fn walk(robots: &Scenarios) -> Option<Figure> {
     let Reference::Walk(walks) = &robots.campaign.reference else {
         return None;
     };
@@ -256,28 +256,28 @@ fn walk(robots: &Flights) -> Option<Figure> {
         let [x, y] = foothold.placement.position_m;
         (x, y)
     });
-    let panel = Panel {
+    let panel = Plot {
         title: "from above".into(),
         x: Axis::new("x, m"),
         y: Axis::new("y, m"),
         marks: vec![
-            Mark::Line(zmp, Ink::Series(1), Stroke::Solid),
-            Mark::Line(com, Ink::Series(0), Stroke::Solid),
-            Mark::Dots(feet.collect(), Ink::Truth),
+            Mark::Line(zmp, Color::Series(1), Stroke::Solid),
+            Mark::Line(com, Color::Series(0), Stroke::Solid),
+            Mark::Dots(feet.collect(), Color::Truth),
         ],
-        ..Panel::default()
+        ..Plot::default()
     };
     let legend = [
-        Key::line(Ink::Series(0), "centre of mass"),
-        Key::line(Ink::Series(1), "zero moment point"),
-        Key::line(Ink::Truth, "footholds (ankles)"),
+        LegendEntry::line(Color::Series(0), "centre of mass"),
+        LegendEntry::line(Color::Series(1), "zero moment point"),
+        LegendEntry::line(Color::Truth, "footholds (ankles)"),
     ];
     let title = "Figure 10: planned walk".to_string();
     let caption =
         "Straight walk of campaigns/paper-robots.toml; y is drawn larger than x.".to_string();
     Some(Figure {
         file: "figure-10.svg".into(),
-        svg: poster(&title, &caption, &[panel], 1, &legend),
+        svg: plot_grid(&title, &caption, &[panel], 1, &legend),
         title,
         caption,
     })

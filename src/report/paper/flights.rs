@@ -6,7 +6,7 @@ use crate::backend::cpu::{Cpu, Precision};
 use crate::campaign::{Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter};
 use crate::controllers::GainSet;
 use crate::draw::draw;
-use crate::model::Shown;
+use crate::model::ChannelSample;
 use crate::model::episode::Snapshot;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,7 +16,7 @@ const EVERY: u32 = 10;
 
 /// A flight of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Flown {
+pub(super) enum Scenario {
     /// Under the FTC.
     Ftc,
     /// Under the FTC, but without initial errors.
@@ -25,7 +25,7 @@ pub(super) enum Flown {
     Pid,
 }
 
-impl Flown {
+impl Scenario {
     /// What the flight is called in a sentence.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ impl Flown {
 
 /// The first agent of a campaign under the FTC, with and without its initial errors, and under the PID.
 #[derive(Debug)]
-pub struct Flights {
+pub struct Scenarios {
     pub(super) campaign: Campaign,
     pub(super) met: Met,
     ftc: Vec<Snapshot>,
@@ -46,7 +46,7 @@ pub struct Flights {
     pid: Vec<Snapshot>,
 }
 
-impl Flights {
+impl Scenarios {
     /// Flies the first episode of a campaign in double precision; `path` is where its text is from.
     ///
     /// # Errors
@@ -56,7 +56,7 @@ impl Flights {
         let mut campaign = Campaign::parse(text, path)?;
         campaign.controllers = [FTC, PID].map(Into::into).to_vec();
         let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.into() })?;
-        let gains = GainSet::obtain(&campaign)?;
+        let gains = GainSet::synthesize_or_load(&campaign)?;
         let trace = |campaign: &Campaign, controller: usize| {
             let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
             cpu.trace(0, controller, EVERY).1
@@ -75,20 +75,20 @@ impl Flights {
         })
     }
 
-    fn snapshots(&self, flown: Flown) -> &[Snapshot] {
+    fn snapshots(&self, flown: Scenario) -> &[Snapshot] {
         match flown {
-            Flown::Ftc => &self.ftc,
-            Flown::OnCourse => &self.on_course,
-            Flown::Pid => &self.pid,
+            Scenario::Ftc => &self.ftc,
+            Scenario::OnCourse => &self.on_course,
+            Scenario::Pid => &self.pid,
         }
     }
 
     /// A quantity of a channel of the first agent over time.
     pub(super) fn series(
         &self,
-        flown: Flown,
+        flown: Scenario,
         channel: usize,
-        pick: impl Fn(&Shown) -> f64,
+        pick: impl Fn(&ChannelSample) -> f64,
     ) -> Series {
         let of_channel = |snapshot: &Snapshot| {
             let shown = snapshot.agents.first()?.get(channel)?;
@@ -103,7 +103,7 @@ impl Flights {
     }
 
     /// When the first agent's flight was no longer finite, s.
-    pub(super) fn lost_s(&self, flown: Flown) -> Option<f64> {
+    pub(super) fn lost_s(&self, flown: Scenario) -> Option<f64> {
         let lost = |snapshot: &&Snapshot| {
             let mut shown = snapshot.agents.first().into_iter().flatten();
             shown.any(|shown| !is_finite(shown))
@@ -134,8 +134,8 @@ impl Flights {
     }
 }
 
-fn is_finite(shown: &Shown) -> bool {
-    let Shown {
+fn is_finite(shown: &ChannelSample) -> bool {
+    let ChannelSample {
         r,
         x,
         e,

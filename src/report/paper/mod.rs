@@ -9,7 +9,7 @@ mod flights;
 mod measures;
 
 pub use claims::{Claim, claims};
-pub use flights::Flights;
+pub use flights::Scenarios;
 
 use super::page::document::{Block, Cell, Document, Grid, Section};
 use super::page::markdown::markdown;
@@ -100,8 +100,8 @@ fn is_ours(dir: &Path) -> bool {
 /// # Errors
 /// If a file cannot be written, or a campaign that is part of the program has become unfit.
 pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
-    let uavs = Flights::fly(UAVS, Path::new("campaigns/scenario-a.toml"))?;
-    let robots = Flights::fly(ROBOTS, Path::new("campaigns/paper-robots.toml"))?;
+    let uavs = Scenarios::fly(UAVS, Path::new("campaigns/scenario-a.toml"))?;
+    let robots = Scenarios::fly(ROBOTS, Path::new("campaigns/paper-robots.toml"))?;
     let claims = claims(&uavs, &robots);
     let figures = figures::all(&uavs, &robots)?;
     for figure in &figures {

@@ -3,8 +3,8 @@
 use crate::draw::draw;
 use crate::draw::quantities::{conditions, title};
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
-use crate::report::run_data::{Evidence, whole};
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::report::run_data::{RunData, whole};
 use crate::results::sensitivity::by_chance;
 use crate::run::replay::command;
 use crate::util::format;
@@ -18,7 +18,7 @@ const WORST: f64 = 3.0;
 const BINS: usize = 10;
 
 /// What each drawn quantity does to failures and errors.
-pub(crate) fn ranking(evidence: &Evidence) -> Section {
+pub(crate) fn ranking(evidence: &RunData) -> Section {
     let sheet = &evidence.ranking;
     if sheet.rows() == 0 {
         let text = match evidence.manifest.episodes {
@@ -80,7 +80,7 @@ pub(crate) fn ranking(evidence: &Evidence) -> Section {
             Cell::Spreads(vec![Spread {
                 value: sheet.real(row, "trend"),
                 interval: ends.iter().all(|end| end.is_finite()).then_some(ends),
-                ink: Ink::Series(controller.unwrap_or_default()),
+                ink: Color::Series(controller.unwrap_or_default()),
                 scale: Scale::Correlation,
             }]),
             Cell::number(format::p_value(p)),
@@ -128,7 +128,7 @@ pub(crate) fn ranking(evidence: &Evidence) -> Section {
 }
 
 /// Quantile bands of the RMS error over a condition.
-fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
+fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
     let met = sizes(evidence, condition);
     let column = format!("rmse_{group}");
     let errors = evidence.of_teams(&evidence.episodes, &column, |_| true);
@@ -165,8 +165,8 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
             band.push((middle, quantile(0.05), quantile(0.95)));
             line.push((middle, quantile(0.5)));
         }
-        marks.push(Mark::Band(band, Ink::Series(index)));
-        marks.push(Mark::Line(line, Ink::Series(index), Stroke::Solid));
+        marks.push(Mark::Band(band, Color::Series(index)));
+        marks.push(Mark::Line(line, Color::Series(index), Stroke::Solid));
     }
     let name = title(&evidence.campaign, condition);
     let roles = evidence.campaign.channel_groups();
@@ -175,7 +175,7 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
         .find(|own| own.role.name() == group)
         .map_or("", |own| own.role.unit());
     Some(Figure {
-        panels: vec![Panel {
+        panels: vec![Plot {
             title: group.to_string(),
             x: Axis::new(name.clone()),
             y: Axis {
@@ -183,7 +183,7 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
                 ..Axis::new(format!("RMS error, {unit}"))
             },
             marks,
-            ..Panel::default()
+            ..Plot::default()
         }],
         legend: evidence.legend(),
         caption: format!(
@@ -195,7 +195,7 @@ fn bands(evidence: &Evidence, condition: &str, group: &str) -> Option<Figure> {
 
 /// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where it does
 /// not apply.
-fn sizes(evidence: &Evidence, condition: &str) -> Vec<f64> {
+fn sizes(evidence: &RunData, condition: &str) -> Vec<f64> {
     let of_episode = |episode: u32| {
         let all = conditions(&evidence.campaign, &draw(&evidence.campaign, episode));
         let own = all.into_iter().find(|(name, _)| name == condition);
@@ -210,7 +210,7 @@ fn sizes(evidence: &Evidence, condition: &str) -> Vec<f64> {
 }
 
 /// The ranges that were really drawn.
-pub(crate) fn drawn(evidence: &Evidence) -> Section {
+pub(crate) fn drawn(evidence: &RunData) -> Section {
     let sheet = &evidence.episodes;
     let first = evidence.campaign.controllers.first();
     let rows: Vec<usize> = (0..sheet.rows())
@@ -288,7 +288,7 @@ pub(crate) fn drawn(evidence: &Evidence) -> Section {
 }
 
 /// The worst episodes of each controller, and how to see them.
-pub(crate) fn worst(evidence: &Evidence) -> Section {
+pub(crate) fn worst(evidence: &RunData) -> Section {
     let sheet = &evidence.worst;
     let mut grid = Grid::new([
         "controller",

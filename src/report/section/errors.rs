@@ -3,15 +3,15 @@
 use crate::agent::ChannelRole;
 use crate::campaign::ALL;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Section};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
-use crate::report::run_data::Evidence;
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::report::run_data::RunData;
 use crate::util::format;
 
 /// Points of a drawn distribution: more cannot be told apart.
 const MOST_POINTS: usize = 300;
 
 /// The comparison of every pair.
-pub(crate) fn pairs(evidence: &Evidence) -> Section {
+pub(crate) fn pairs(evidence: &RunData) -> Section {
     let sheet = &evidence.comparison;
     if sheet.rows() == 0 {
         let text = "One controller has nothing to be compared with.";
@@ -104,7 +104,7 @@ pub(crate) fn pairs(evidence: &Evidence) -> Section {
 }
 
 /// The distributions of the RMS error.
-pub(crate) fn distributions(evidence: &Evidence) -> Section {
+pub(crate) fn distributions(evidence: &RunData) -> Section {
     let roles = evidence.campaign.channel_groups();
     let max_rmse = &evidence.campaign.verdict.max_rmse;
     let limit = |channel: usize| max_rmse.get(channel).copied().unwrap_or(f64::INFINITY);
@@ -132,7 +132,7 @@ pub(crate) fn distributions(evidence: &Evidence) -> Section {
             )
         })
     });
-    let figure = |panels: Vec<Panel>, of: &str| Figure {
+    let figure = |panels: Vec<Plot>, of: &str| Figure {
         panels,
         legend: evidence.legend(),
         caption: format!(
@@ -160,7 +160,7 @@ pub(crate) fn distributions(evidence: &Evidence) -> Section {
 const FRAME: f64 = 20.0;
 
 /// The empirical distribution of values by controller.
-fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Panel {
+fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Plot {
     let medians = values.iter().map(|values| {
         let mut sorted = values.clone();
         sorted.sort_by(f64::total_cmp);
@@ -187,9 +187,9 @@ fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Pane
             .filter(|_| within < n)
             .map(|(_, share)| (frame, share));
         let points = points.chain(end);
-        Mark::Line(points.collect(), Ink::Series(index), Stroke::Steps)
+        Mark::Line(points.collect(), Color::Series(index), Stroke::Steps)
     });
-    Panel {
+    Plot {
         title: title.into(),
         x: Axis {
             logarithmic: true,
@@ -201,11 +201,11 @@ fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Pane
             ..Axis::new("share of episodes")
         },
         marks: marks.collect(),
-        ..Panel::default()
+        ..Plot::default()
     }
 }
 
-fn quantiles(evidence: &Evidence) -> Grid {
+fn quantiles(evidence: &RunData) -> Grid {
     let sheet = &evidence.summary;
     let mut grid = Grid::new([
         "controller",

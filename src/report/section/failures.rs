@@ -3,13 +3,13 @@
 use crate::campaign::ALL;
 use crate::report::notes::caveats;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
-use crate::report::page::plot::{Axis, Ink, Mark, Panel, Stroke};
-use crate::report::run_data::{Evidence, whole};
+use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::report::run_data::{RunData, whole};
 use crate::util::format;
 use crate::util::format::sentence;
 
 /// Failure rates with intervals, requirements, and the share of episodes still good over time.
-pub(crate) fn section(evidence: &Evidence) -> Section {
+pub(crate) fn section(evidence: &RunData) -> Section {
     let mut blocks = vec![Block::Text(meaning(evidence))];
     let caveats = caveats(&evidence.campaign, &evidence.manifest);
     blocks.extend(caveats.iter().map(|caveat| Block::Text(sentence(caveat))));
@@ -21,7 +21,7 @@ pub(crate) fn section(evidence: &Evidence) -> Section {
     Section::new("Failures", blocks)
 }
 
-fn meaning(evidence: &Evidence) -> String {
+fn meaning(evidence: &RunData) -> String {
     let verdict = &evidence.campaign.verdict;
     let agents = match evidence.campaign.team {
         1 => format!("its {}", evidence.campaign.agent.noun(1)),
@@ -70,7 +70,7 @@ pub(crate) fn kind_of_interval(campaign: &crate::campaign::Campaign) -> &'static
 }
 
 /// The failure rate of a row of the summary.
-pub(crate) fn rate(evidence: &Evidence, row: usize, ink: Ink) -> Spread {
+pub(crate) fn rate(evidence: &RunData, row: usize, ink: Color) -> Spread {
     let sheet = &evidence.summary;
     let kinds = ["replicates", "sequential", "wilson"];
     let interval = kinds.iter().find_map(|kind| {
@@ -86,7 +86,7 @@ pub(crate) fn rate(evidence: &Evidence, row: usize, ink: Ink) -> Spread {
     }
 }
 
-fn rates(evidence: &Evidence) -> Grid {
+fn rates(evidence: &RunData) -> Grid {
     let sheet = &evidence.summary;
     let mut grid = Grid::new([
         "controller",
@@ -105,7 +105,7 @@ fn rates(evidence: &Evidence) -> Grid {
         let bound = sheet.real(row, "failure_rate_upper_95");
         grid.rows.push(vec![
             Cell::text(&**name),
-            Cell::Spreads(vec![rate(evidence, row, Ink::Series(index))]),
+            Cell::Spreads(vec![rate(evidence, row, Color::Series(index))]),
             Cell::number(format!(
                 "{:.0} of {:.0}",
                 sheet.real(row, "failed"),
@@ -119,7 +119,7 @@ fn rates(evidence: &Evidence) -> Grid {
     grid
 }
 
-fn requirements(evidence: &Evidence) -> Grid {
+fn requirements(evidence: &RunData) -> Grid {
     let mut grid = Grid::new([
         "requirement",
         "stratum",
@@ -148,7 +148,7 @@ fn requirements(evidence: &Evidence) -> Grid {
 }
 
 /// The share of episodes that have not failed yet, over time.
-fn survival(evidence: &Evidence) -> Figure {
+fn survival(evidence: &RunData) -> Figure {
     let campaign = &evidence.campaign;
     let episodes = evidence.manifest.episodes as usize;
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
@@ -183,10 +183,10 @@ fn survival(evidence: &Evidence) -> Figure {
         }
         let last = line.last().map_or(1.0, |point| point.1);
         line.push((end_s, last));
-        Mark::Line(line, Ink::Series(index), Stroke::Steps)
+        Mark::Line(line, Color::Series(index), Stroke::Steps)
     });
     Figure {
-        panels: vec![Panel {
+        panels: vec![Plot {
             title: "survival".into(),
             x: Axis {
                 range: Some((0.0, end_s)),
@@ -198,7 +198,7 @@ fn survival(evidence: &Evidence) -> Figure {
                 ..Axis::new("share not failed yet")
             },
             marks: marks.collect(),
-            ..Panel::default()
+            ..Plot::default()
         }],
         legend: evidence.legend(),
         caption: "Share of the episodes that have not failed yet. What breaks the limit of the RMS error alone counts as failed \

@@ -2,11 +2,11 @@
 
 use crate::controllers::ChannelController;
 use crate::report::page::document::{Block, Cell, Grid, Section};
-use crate::report::run_data::Evidence;
+use crate::report::run_data::RunData;
 use crate::util::format;
 
 /// Gains, poles, margins, certificate, and the attenuation that flights showed.
-pub(crate) fn section(evidence: &Evidence) -> Section {
+pub(crate) fn section(evidence: &RunData) -> Section {
     let groups = evidence.campaign.channel_groups();
     let mut margins = Grid::new([
         "controller",
@@ -111,7 +111,7 @@ fn numbers(own: &ChannelController) -> String {
     text
 }
 
-fn attenuation_explained(evidence: &Evidence) -> &'static str {
+fn attenuation_explained(evidence: &RunData) -> &'static str {
     match &evidence.manifest.cross_check {
         Some(check) if !check.attenuation.is_empty() => {
             "Attenuation of the flights that were cross-checked: the square root of the left side of (24) without V(0), the \
@@ -128,7 +128,7 @@ fn attenuation_explained(evidence: &Evidence) -> &'static str {
     }
 }
 
-fn attenuation(evidence: &Evidence) -> Grid {
+fn attenuation(evidence: &RunData) -> Grid {
     let mut grid = Grid::new([
         "controller",
         "channels",

@@ -1,12 +1,12 @@
 //! What it takes to do the run again, and what it was done with.
 
 use crate::report::page::document::{Block, Cell, Grid, Section};
-use crate::report::run_data::Evidence;
-use crate::simulation::Leg;
+use crate::report::run_data::RunData;
+use crate::simulation::Segment;
 use crate::simulation::cross_check::CrossCheck;
 
 /// Version, seed, machine, times, cross-check, and the campaign's text.
-pub(crate) fn section(evidence: &Evidence) -> Section {
+pub(crate) fn section(evidence: &RunData) -> Section {
     let manifest = &evidence.manifest;
     let mut grid = Grid::new(["what", "value"]);
     let mut add = |name: &str, value: String| {
@@ -81,8 +81,8 @@ pub(crate) fn section(evidence: &Evidence) -> Section {
     )
 }
 
-fn engine(leg: &Leg, several: bool) -> String {
-    let Leg {
+fn engine(leg: &Segment, several: bool) -> String {
+    let Segment {
         engine,
         episodes,
         first,

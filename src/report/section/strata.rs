@@ -2,12 +2,12 @@
 
 use super::failures::rate;
 use crate::report::page::document::{Block, Cell, Grid, Section};
-use crate::report::page::plot::Ink;
-use crate::report::run_data::Evidence;
+use crate::report::page::plot::Color;
+use crate::report::run_data::RunData;
 use crate::util::format;
 
 /// The forest of failure rates and the growth of the errors; none of a campaign without strata.
-pub(crate) fn section(evidence: &Evidence) -> Option<Section> {
+pub(crate) fn section(evidence: &RunData) -> Option<Section> {
     let strata = evidence.campaign.strata.all();
     if strata.is_empty() {
         return None;
@@ -33,7 +33,7 @@ pub(crate) fn section(evidence: &Evidence) -> Option<Section> {
             let wanted = [("stratum", &*stratum.name), ("controller", name)];
             if let Some(row) = evidence.summary.find(&wanted).next() {
                 n = evidence.summary.real(row, "n");
-                rates.push(rate(evidence, row, Ink::Series(index)));
+                rates.push(rate(evidence, row, Color::Series(index)));
             }
         }
         forest.rows.push(vec![
@@ -60,7 +60,7 @@ pub(crate) fn section(evidence: &Evidence) -> Option<Section> {
     Some(Section::new("By stratum", blocks))
 }
 
-fn growth(evidence: &Evidence) -> Grid {
+fn growth(evidence: &RunData) -> Grid {
     let sheet = &evidence.screening;
     let roles = evidence.campaign.channel_groups();
     let mut grid = Grid::new(["controller", "stratum", "against"]);

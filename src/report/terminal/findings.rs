@@ -8,7 +8,7 @@ use crate::agent::ChannelRole;
 use crate::campaign::{ALL, Campaign};
 use crate::draw::quantities::title;
 use crate::report::notes::caveats;
-use crate::results::sensitivity::RankedCondition;
+use crate::results::sensitivity::SensitivityResult;
 use crate::results::{FailureRate, Measured, PairedComparison, Ratio};
 use crate::run::Findings;
 use crate::run::replay::command;
@@ -249,7 +249,7 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
 
 /// What raises failures and errors of each controller, as far as it is sure.
 fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
-    let sure: Vec<&RankedCondition> = findings
+    let sure: Vec<&SensitivityResult> = findings
         .ranking
         .iter()
         .filter(|ranked| ranked.target.kind != "log_ratio")

@@ -109,7 +109,7 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             &[fault] => campaign.faults.get(fault).map(|own| &own.name) == Some(&stratum.name),
             _ => false,
         },
-        StratumFaults::Drawn => false,
+        StratumFaults::RandomQuantity => false,
     };
     let all = campaign.strata.all();
     for (index, stratum) in all.iter().enumerate() {
@@ -130,7 +130,9 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             }
         }
         let faults = match &stratum.faults {
-            StratumFaults::Drawn => "all faults, each with its own probability".to_string(),
+            StratumFaults::RandomQuantity => {
+                "all faults, each with its own probability".to_string()
+            }
             StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
             StratumFaults::Certain(faults) => {
                 let faults = faults.iter().filter_map(|&k| campaign.faults.get(k));

@@ -82,7 +82,7 @@ impl Attenuation {
 
 /// A channel's design, gains and certificate: what (24) is about.
 #[derive(Debug, Clone)]
-pub struct Theorem {
+pub struct AttenuationInequality {
     design: ChannelDesign,
     gains: ControllerGains,
     /// Abar of (19), s x s.
@@ -102,7 +102,7 @@ struct Instant {
     model_error: [Full; 2],
 }
 
-impl Theorem {
+impl AttenuationInequality {
     /// The theorem for gains that fly and their certificate.
     ///
     /// # Errors
@@ -165,7 +165,7 @@ impl Theorem {
             samples,
             from,
         } = *stretch;
-        let flight = Flight {
+        let flight = ChannelTrajectory {
             theorem: self,
             stretch,
             lags: self.lags(step_s),
@@ -352,8 +352,8 @@ impl Sums {
 }
 
 /// A stretch of a flight and the derivatives of its faults.
-struct Flight<'a> {
-    theorem: &'a Theorem,
+struct ChannelTrajectory<'a> {
+    theorem: &'a AttenuationInequality,
     stretch: &'a Stretch<'a>,
     /// By how many samples each tap lags.
     lags: Vec<f64>,
@@ -361,7 +361,7 @@ struct Flight<'a> {
     rates: &'a [Vec<[f64; 2]>; 2],
 }
 
-impl Flight<'_> {
+impl ChannelTrajectory<'_> {
     /// Whether a tap of a fault begins at sample `k`, `k` at least 1.
     fn begins(&self, k: usize) -> bool {
         let reach = (k - 1) as f64..k as f64;

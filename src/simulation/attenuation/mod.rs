@@ -8,12 +8,12 @@ mod applicability;
 mod channel;
 
 pub use applicability::{is_smooth, obstacle};
-pub use channel::{Attenuation, Sample, Stretch, Theorem};
+pub use channel::{Attenuation, AttenuationInequality, Sample, Stretch};
 
 use crate::agent::ChannelGroup;
 use crate::backend::cpu::{Cpu, Precision};
 use crate::campaign::Campaign;
-use crate::controllers::{ChannelController, FlyingController, GainSet};
+use crate::controllers::{ChannelController, GainSet, SimulatedController};
 use crate::draw::{Episode, draw};
 use crate::model::episode::Snapshot;
 use crate::synthesis::{ChannelDesign, poles};
@@ -107,7 +107,7 @@ pub struct Start {
 impl Start {
     /// The start under a controller; none where the campaign's step resolves it.
     #[must_use]
-    pub fn of(campaign: &Campaign, controller: &FlyingController) -> Option<Self> {
+    pub fn of(campaign: &Campaign, controller: &SimulatedController) -> Option<Self> {
         let poles = controller
             .groups
             .iter()
@@ -143,18 +143,18 @@ impl Start {
 }
 
 /// A controller whose flights (24) is asked about.
-pub struct Witness<'a> {
+pub struct AttenuationAnalysis<'a> {
     campaign: &'a Campaign,
-    controller: &'a FlyingController,
+    controller: &'a SimulatedController,
     index: usize,
     /// Of each channel group.
-    theorems: Vec<Result<Theorem, NotApplicable>>,
+    theorems: Vec<Result<AttenuationInequality, NotApplicable>>,
     start: Option<Start>,
     /// What flies the start.
     flyer: Option<Cpu>,
 }
 
-impl<'a> Witness<'a> {
+impl<'a> AttenuationAnalysis<'a> {
     /// Prepares controller number `index` of `gains`.
     #[must_use]
     pub fn new(campaign: &'a Campaign, gains: &'a GainSet, index: usize) -> Self {
@@ -199,7 +199,7 @@ impl<'a> Witness<'a> {
     #[must_use]
     pub fn judge(&self, episode: &Episode, trajectory: &Trajectory) -> Attenuations {
         let step_s = self.campaign.time.step_s;
-        let of_channel = |agent, channel, theorem: &Theorem| {
+        let of_channel = |agent, channel, theorem: &AttenuationInequality| {
             let samples = |snapshots: &[Snapshot]| -> Vec<Sample> {
                 let of_instant = |snapshot| sample(snapshot, agent, channel);
                 snapshots.iter().map(of_instant).collect()
@@ -218,18 +218,19 @@ impl<'a> Witness<'a> {
                 ]),
             }
         };
-        let of_agent = |(agent, channels): (usize, Vec<Result<&Theorem, NotApplicable>>)| {
-            let channels = channels.into_iter().enumerate();
-            channels
-                .map(|(channel, theorem)| of_channel(agent, channel, theorem?))
-                .collect()
-        };
+        let of_agent =
+            |(agent, channels): (usize, Vec<Result<&AttenuationInequality, NotApplicable>>)| {
+                let channels = channels.into_iter().enumerate();
+                channels
+                    .map(|(channel, theorem)| of_channel(agent, channel, theorem?))
+                    .collect()
+            };
         let known = self.known(episode).into_iter().enumerate();
         known.map(of_agent).collect()
     }
 
     /// The theorem of each channel, or what is known before the flight to keep it from saying anything: `[agent][channel]`.
-    fn known(&self, episode: &Episode) -> Vec<Vec<Result<&Theorem, NotApplicable>>> {
+    fn known(&self, episode: &Episode) -> Vec<Vec<Result<&AttenuationInequality, NotApplicable>>> {
         let of_channel = |agent: usize, channel: usize| {
             let group = self.campaign.group_of(channel);
             let theorem = self.theorems[group].as_ref().map_err(Clone::clone)?;
@@ -255,12 +256,15 @@ impl<'a> Witness<'a> {
     }
 }
 
-fn theorem(own: &ChannelController, design: &ChannelDesign) -> Result<Theorem, NotApplicable> {
+fn theorem(
+    own: &ChannelController,
+    design: &ChannelDesign,
+) -> Result<AttenuationInequality, NotApplicable> {
     if own.gains.is_pid() {
         return Err(NotApplicable::NoEstimate);
     }
     let certificate = own.certificate().ok_or(NotApplicable::NoCertificate)?;
-    Theorem::new(design, &own.gains, certificate)
+    AttenuationInequality::new(design, &own.gains, certificate)
 }
 
 fn sample(snapshot: &Snapshot, agent: usize, channel: usize) -> Sample {

@@ -35,7 +35,7 @@ pub(crate) fn measure(
             }
             let mut campaign = campaign.clone();
             campaign.controllers = vec![(*controller).to_string()];
-            let gains = GainSet::obtain(&campaign).expect("the paper's gains exist");
+            let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
             let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
             let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
             let pool = rayon::ThreadPoolBuilder::new()

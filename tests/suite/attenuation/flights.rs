@@ -6,16 +6,16 @@ use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
 use urts_mc::simulation::attenuation::{
-    Attenuation, Attenuations, NotApplicable, Witness, is_smooth,
+    Attenuation, AttenuationAnalysis, Attenuations, NotApplicable, is_smooth,
 };
 
 /// What (24) says about an episode under a controller.
 fn found(campaign: &Campaign, controller: &str, episode: u32) -> Attenuations {
-    let gains = GainSet::obtain(campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let names = &campaign.controllers;
     let index = names.iter().position(|name| name == controller).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
-    let witness = Witness::new(campaign, &gains, index);
+    let witness = AttenuationAnalysis::new(campaign, &gains, index);
     witness.of_episode(episode, || cpu.trace(episode, index, 1).1)
 }
 

@@ -3,7 +3,9 @@
 use crate::common::golden;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::sync::LazyLock;
-use urts_mc::simulation::attenuation::{Attenuation, NotApplicable, Sample, Stretch, Theorem};
+use urts_mc::simulation::attenuation::{
+    Attenuation, AttenuationInequality, NotApplicable, Sample, Stretch,
+};
 use urts_mc::synthesis::{ChannelSynthesis, Preset, augmented_channel, synthesize};
 
 /// The paper's UAV channel: 12 states, taps 0.1 s apart.
@@ -20,7 +22,7 @@ static UAV: LazyLock<ChannelSynthesis> =
 
 /// What the library says about a flight.
 fn judged(step_s: f64, samples: &[Sample]) -> Result<Attenuation, NotApplicable> {
-    let theorem = Theorem::new(&UAV.design, &UAV.ftc, &UAV.certificate).unwrap();
+    let theorem = AttenuationInequality::new(&UAV.design, &UAV.ftc, &UAV.certificate).unwrap();
     theorem.attenuation(&[Stretch {
         step_s,
         samples,
@@ -34,7 +36,7 @@ fn judged_in_two(
     (fine_step_s, start): (f64, &[Sample]),
     from: usize,
 ) -> Result<Attenuation, NotApplicable> {
-    let theorem = Theorem::new(&UAV.design, &UAV.ftc, &UAV.certificate).unwrap();
+    let theorem = AttenuationInequality::new(&UAV.design, &UAV.ftc, &UAV.certificate).unwrap();
     let stretch = |step_s, samples, from| Stretch {
         step_s,
         samples,
@@ -315,7 +317,7 @@ fn an_initial_error_alone_exceeds_the_certified_level_and_yet_24_holds() {
 #[test]
 fn a_certificate_of_other_gains_is_no_theorem() {
     let refused = |certificate, gains| {
-        let theorem = Theorem::new(&UAV.design, gains, certificate);
+        let theorem = AttenuationInequality::new(&UAV.design, gains, certificate);
         assert_eq!(theorem.err(), Some(NotApplicable::OtherCertificate));
     };
     let mut certificate = UAV.certificate.clone();

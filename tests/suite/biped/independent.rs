@@ -10,7 +10,7 @@ use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget};
 use urts_mc::controllers::GainSet;
 use urts_mc::draw::{AgentDraw, Episode, draw};
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 use urts_mc::synthesis::LoopGains;
 
 /// Steps that are compared: every fault begins among them.
@@ -60,7 +60,7 @@ impl World {
         Self {
             robot: biped.robot.clone(),
             episode: draw(&campaign, index),
-            gains: GainSet::obtain(&campaign).unwrap().loops()[0][0],
+            gains: GainSet::synthesize_or_load(&campaign).unwrap().loops()[0][0],
             campaign,
         }
     }
@@ -236,7 +236,7 @@ impl World {
     }
 
     /// What the team shows at every step, by the classical Runge-Kutta method.
-    fn fly(&self) -> Vec<Vec<[Shown; JOINTS]>> {
+    fn fly(&self) -> Vec<Vec<[ChannelSample; JOINTS]>> {
         let h = self.campaign.time.step_s;
         let mut team: Vec<State> = (0..self.campaign.team).map(|a| self.start(a)).collect();
         let mut shown = vec![];
@@ -264,8 +264,8 @@ impl World {
     }
 }
 
-fn show(state: &State, answer: &Answer) -> [Shown; JOINTS] {
-    std::array::from_fn(|c| Shown {
+fn show(state: &State, answer: &Answer) -> [ChannelSample; JOINTS] {
+    std::array::from_fn(|c| ChannelSample {
         r: answer.reference[c],
         x: answer.reference[c] + state[(1, c)],
         e: state[(1, c)],
@@ -280,7 +280,7 @@ fn show(state: &State, answer: &Answer) -> [Shown; JOINTS] {
 }
 
 /// A name and where a channel shows it.
-type Quantity = (&'static str, fn(&Shown) -> f64);
+type Quantity = (&'static str, fn(&ChannelSample) -> f64);
 /// What is compared.
 const QUANTITIES: [Quantity; 10] = [
     ("r", |shown| shown.r),
@@ -297,7 +297,7 @@ const QUANTITIES: [Quantity; 10] = [
 
 /// Of each quantity the largest difference from the formulas over all robots, joints and steps, relative to its largest value.
 fn differences(campaign: &Campaign, world: &World) -> Vec<(&'static str, f64)> {
-    let gains = GainSet::obtain(campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
     let snapshots = cpu.trace(world.episode.index, 0, 1).1;
     let expected = world.fly();

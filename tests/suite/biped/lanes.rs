@@ -3,7 +3,7 @@
 use super::everything;
 use crate::common::altered;
 use std::ops::Range;
-use urts_mc::backend::Flown;
+use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
@@ -18,8 +18,8 @@ fn flown(
     precision: Precision,
     simd: Option<Simd>,
     episodes: Range<u32>,
-) -> Vec<Flown> {
-    let gains = GainSet::obtain(campaign).unwrap();
+) -> Vec<EpisodeResult> {
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     Cpu::new(campaign, &gains.loops(), precision, simd).fly(episodes, &|_| ())
 }
 
@@ -55,7 +55,7 @@ fn single_precision_stays_within_the_contract_on_walks() {
     campaign.controllers.truncate(1);
     let episodes = 0..4;
     let double = flown(&campaign, Precision::F64, None, episodes.clone());
-    let outcomes = |flown: &[Flown]| -> Vec<AgentOutcome> {
+    let outcomes = |flown: &[EpisodeResult]| -> Vec<AgentOutcome> {
         let all = flown.iter().flat_map(|flown| flown.outcomes[0].clone());
         all.collect()
     };
@@ -84,7 +84,7 @@ fn single_precision_stays_within_the_contract_on_walks() {
 /// Outcomes with the first robot of the episode `wild` thrown out of its course, and without that; in that episode the others
 /// do not feel it.
 fn with_and_without<L: Lane>(campaign: &Campaign, wild: usize) -> [Vec<Vec<AgentOutcome>>; 2] {
-    let gains = GainSet::obtain(campaign).unwrap();
+    let gains = GainSet::synthesize_or_load(campaign).unwrap();
     let controller = Controller::new(&gains.loops()[0]);
     let model = Model::new(campaign);
     let mut episodes: Vec<Episode> = (0..L::WIDTH as u32).map(|k| draw(campaign, k)).collect();

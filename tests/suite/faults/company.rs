@@ -11,7 +11,7 @@ fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {
         let path = repository(&format!("tests/suite/gpu/{name}.toml"));
         let mut campaign = Campaign::load(&path).unwrap();
         campaign.episodes = 11;
-        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
         let digits = |precision, simd, episodes| {
             let cpu = Cpu::new(&campaign, &gains, precision, simd);
             let flown = cpu.fly(episodes, &|_| ()).into_iter();

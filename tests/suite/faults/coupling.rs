@@ -1,12 +1,12 @@
 //! The coupling (10) from the origin and from the team's centroid.
 
 use super::{DRAG_N_S_M, MASS_KG, X, campaign, flight, near};
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 
 const KAPPA: f64 = 0.7;
 
 /// A team of two, the second of which flies elsewhere; both may be moved by as much.
-fn coupled(coordinates: &str, moved_m: f64) -> Vec<Vec<Vec<Shown>>> {
+fn coupled(coordinates: &str, moved_m: f64) -> Vec<Vec<Vec<ChannelSample>>> {
     let center = |x_m: f64| {
         format!(
             "[[reference.agents]]\ncenter = [{:?}, 0.0, 0.0, 0.0, 0.0, 0.0]\n",
@@ -21,7 +21,7 @@ fn coupled(coordinates: &str, moved_m: f64) -> Vec<Vec<Vec<Shown>>> {
 }
 
 /// Holds the force on x of each agent against a formula of its x and the other's.
-fn holds(flown: &[Vec<Vec<Shown>>], force_n: impl Fn(f64, f64) -> f64) {
+fn holds(flown: &[Vec<Vec<ChannelSample>>], force_n: impl Fn(f64, f64) -> f64) {
     for agents in flown {
         for (own, other) in [(0, 1), (1, 0)] {
             let shown = &agents[own][X];

@@ -227,7 +227,7 @@ fn simulate(gains: &LoopGains, between: Between) -> Vec<State> {
 /// The largest difference of e between a flight and the formulas, m.
 fn difference(more: &str, between: Between) -> f64 {
     let campaign = campaign(more);
-    let gains = GainSet::obtain(&campaign).unwrap().loops()[0][0];
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops()[0][0];
     let states = simulate(&gains, between);
     let flown = flight(&campaign);
     assert_eq!(states.len(), flown.len());

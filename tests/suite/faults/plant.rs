@@ -4,20 +4,20 @@ use super::{
     AMPLITUDE_M, DRAG_N_S_M, FREQUENCY_RAD_S, GRAVITY_M_S2, MASS_KG, X, campaign, flight, near,
     time_s, velocity,
 };
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 
 const ONSET: usize = 150;
 const INERTIA_KG_M2: [f64; 3] = [1.25, 1.25, 2.2];
 const ANGULAR_DRAG_N_M_S: f64 = 0.012;
 
-fn plant(kind: &str, more: &str) -> Vec<Vec<Vec<Shown>>> {
+fn plant(kind: &str, more: &str) -> Vec<Vec<Vec<ChannelSample>>> {
     flight(&campaign(&format!(
         "[[fault]]\ntarget = \"plant\"\nkind = \"{kind}\"\nonset_s = 0.3\n{more}\n"
     )))
 }
 
 /// f1 of x if its mass is this: e'' is (u - K v)/mass - r'', what was commanded u/m less the feedforward.
-fn f1_of_x(shown: &Shown, step: usize, mass_kg: f64) -> f64 {
+fn f1_of_x(shown: &ChannelSample, step: usize, mass_kg: f64) -> f64 {
     let phase = FREQUENCY_RAD_S * time_s(step);
     let acceleration = -AMPLITUDE_M * FREQUENCY_RAD_S * FREQUENCY_RAD_S * phase.sin();
     let rate = AMPLITUDE_M * FREQUENCY_RAD_S * phase.cos();
@@ -26,7 +26,12 @@ fn f1_of_x(shown: &Shown, step: usize, mass_kg: f64) -> f64 {
 }
 
 /// f1 of an angle that stands still, if this torque acts on this inertia beside the command.
-fn f1_of_angle(shown: &Shown, inertia_kg_m2: f64, modelled_kg_m2: f64, torque_n_m: f64) -> f64 {
+fn f1_of_angle(
+    shown: &ChannelSample,
+    inertia_kg_m2: f64,
+    modelled_kg_m2: f64,
+    torque_n_m: f64,
+) -> f64 {
     let net = shown.u + torque_n_m - ANGULAR_DRAG_N_M_S * shown.e_rate;
     net / inertia_kg_m2 - shown.u / modelled_kg_m2
 }
@@ -77,7 +82,7 @@ fn val_an_inertia_grows_and_a_mass_does_not() {
 }
 
 /// Roll and pitch of a UAV whose gyroscopic torques are small: as far as they are not, the channels say it of themselves.
-fn gyroscopic(agents: &[Vec<Shown>], axis: usize) -> f64 {
+fn gyroscopic(agents: &[Vec<ChannelSample>], axis: usize) -> f64 {
     let rate = |axis: usize| agents[0][3 + axis % 3].e_rate;
     let [j, k] = [INERTIA_KG_M2[(axis + 1) % 3], INERTIA_KG_M2[(axis + 2) % 3]];
     (k - j) / INERTIA_KG_M2[axis] * rate(axis + 1) * rate(axis + 2)

@@ -6,7 +6,7 @@ use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::{Campaign, DisturbanceKind};
 use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 use urts_mc::simulation::attenuation::obstacle;
 
 const Z: usize = 2;
@@ -46,7 +46,7 @@ fn of_all() -> String {
 }
 
 /// The formula, with the profile of another power.
-fn force_n(agents: &[Vec<Shown>], own: usize, power: i32) -> f64 {
+fn force_n(agents: &[Vec<ChannelSample>], own: usize, power: i32) -> f64 {
     let x = |agent: usize, channel: usize| agents[agent][channel].x;
     let mut sum = 0.0;
     for [force_n, radius_m, length_m] in [JETS[own], SECOND] {
@@ -63,7 +63,7 @@ fn force_n(agents: &[Vec<Shown>], own: usize, power: i32) -> f64 {
 }
 
 /// The force on a channel of translation whose command acts as it is wanted.
-fn found_n(shown: &Shown) -> f64 {
+fn found_n(shown: &ChannelSample) -> f64 {
     MASS_KG * shown.f1 + DRAG_N_S_M * shown.e_rate
 }
 
@@ -158,7 +158,7 @@ fn axes_in_one_group_give_the_same_bits_as_each_on_its_own() {
     let mut together = Campaign::load(&path).unwrap();
     together.episodes = 5;
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
-    let gains = GainSet::obtain(&together).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&together).unwrap().loops();
     let flown = |campaign: &Campaign, precision, simd| {
         let flown = Cpu::new(campaign, &gains, precision, simd).fly(0..5, &|_| ());
         format!(
@@ -201,7 +201,7 @@ fn who_diverged_blows_at_nobody() {
         let campaign = Campaign::parse(&text, &path).unwrap();
         let forces = |index: u32| draw(&campaign, index).agents[0].disturbances[0][0][0];
         assert!((0..4).any(|k| forces(k) == 0.0) && (0..4).any(|k| forces(k) == 5.0));
-        let gains = GainSet::obtain(&campaign).unwrap();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap();
         for precision in [Precision::F64, Precision::F32] {
             let cpu = Cpu::new(&campaign, &gains.loops(), precision, None);
             for (index, flown) in (0..).zip(cpu.fly(0..4, &|_| ())) {

@@ -1,10 +1,10 @@
 //! Wind: the force of a gust at every step, and variance and spectrum of turbulence.
 
 use super::{DRAG_N_S_M, MASS_KG, campaign, flight, near, time_s};
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 
 /// The force on a channel of translation whose command acts as it is wanted.
-fn force_n(shown: &Shown) -> f64 {
+fn force_n(shown: &ChannelSample) -> f64 {
     MASS_KG * shown.f1 + DRAG_N_S_M * shown.e_rate
 }
 

@@ -2,7 +2,7 @@
 
 use super::Gains;
 use std::fmt;
-use urts_mc::backend::Flown;
+use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::draw::Episode;
@@ -68,7 +68,7 @@ pub(super) const TWIN: Against = Against {
 pub(super) struct Expected {
     campaign: Campaign,
     against: &'static Against,
-    flown: Vec<Flown>,
+    flown: Vec<EpisodeResult>,
     /// The same campaign with every threshold on |e| lower and higher by the tolerance.
     strict: Cpu,
     lenient: Cpu,
@@ -156,7 +156,7 @@ impl Expected {
     }
 
     /// Compares every episode, controller, agent and channel; the error is the first difference.
-    pub(super) fn compare(&self, flown: &[Flown]) -> Result<Summary, String> {
+    pub(super) fn compare(&self, flown: &[EpisodeResult]) -> Result<Summary, String> {
         let mut summary = Summary::default();
         require(flown.len() == self.flown.len(), || {
             format!("{} episodes", flown.len())

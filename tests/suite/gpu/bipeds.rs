@@ -8,7 +8,7 @@ use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::controllers::GainSet;
 use urts_mc::simulation::cross_check::cross_check;
-use urts_mc::simulation::{Backend, Settings, fly};
+use urts_mc::simulation::{Backend, RunOptions, fly};
 
 /// One controller of [`mixed_biped`].
 const FTC: (&str, &str) = ("\"ftc\", \"pid\"", "\"ftc\"");
@@ -95,7 +95,7 @@ fn val_a_team_of_42_bipeds_agrees_though_its_references_take_turns_on_the_device
         ],
     );
     assert!(campaign.time.steps > 831);
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     let flown = super::fly(&gpu, &campaign, &gains, Tuning::default());
     let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&flown);
     let summary = agreed.unwrap();
@@ -113,15 +113,15 @@ fn val_trajectories_of_bipeds_agree_at_every_sample_and_end_as_flights_do() {
 fn a_run_of_bipeds_passes_its_cross_check() {
     let Some(gpu) = gpu_or_skip() else { return };
     let campaign = mixed_biped(&[FTC]);
-    let gains = GainSet::obtain(&campaign).unwrap();
-    let settings = Settings {
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let options = RunOptions {
         backend: Backend::Gpu { adapter: None },
         tuning: Tuning::default(),
-        ..Settings::cpu(Precision::F32)
+        ..RunOptions::cpu(Precision::F32)
     };
-    let flight = fly(&campaign, &gains, &settings, Some(&gpu), &|_| ()).unwrap();
+    let flight = fly(&campaign, &gains, &options, Some(&gpu), &|_| ()).unwrap();
     let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-    let check = cross_check(&campaign, &gains, &settings, leg, scores, Some(&gpu), 8).unwrap();
+    let check = cross_check(&campaign, &gains, &options, leg, scores, Some(&gpu), 8).unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 2, "{check:?}");
 }

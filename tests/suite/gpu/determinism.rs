@@ -2,8 +2,8 @@
 
 use super::{ALIKE, BRIEF, Gains, fly, fly_all, linked, mixed, mixed_biped, replaced};
 use crate::common::gpu_or_skip;
-use urts_mc::backend::Flown;
-use urts_mc::backend::gpu::{GpuFlyer, Tuning};
+use urts_mc::backend::EpisodeResult;
+use urts_mc::backend::gpu::{GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 
@@ -16,12 +16,12 @@ fn short(episodes: &str, controllers: &str) -> (Campaign, Gains) {
         ("[0.0, 1.0, 60.0]", "[0.0, 1.0, 400.0]"),
     ];
     let campaign = mixed(&[&BRIEF[..], &ALIKE, &own].concat());
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     (campaign, gains)
 }
 
 /// Flights in digits that no other number has, also where they left the numbers.
-fn digits(flown: &[Flown]) -> Vec<String> {
+fn digits(flown: &[EpisodeResult]) -> Vec<String> {
     flown.iter().map(|flown| format!("{flown:?}")).collect()
 }
 
@@ -63,7 +63,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
     let Some(gpu) = gpu_or_skip() else { return };
     let controllers = ("\"ftc\", \"pid\"", "\"pid\"");
     let campaign = mixed_biped(&[controllers]);
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 16);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
@@ -77,7 +77,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
 fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
     let Some(gpu) = gpu_or_skip() else { return };
     let campaign = linked(&[("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"")]);
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     // Spans that end between the ticks of the controller, and while a link is blocked.
     for (batch, steps) in [(Some(3), Some(101)), (None, Some(7))] {
@@ -90,7 +90,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
 fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = short("episodes = 70", "\"ftc\", \"pid\"");
-    let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
     let all = digits(&fly_all(&mut flyer, &campaign).unwrap());
     // 43 steps: samples fall inside blocks of noise, and the last is shorter; more samples than one read-back holds.
     let mut trace = |episodes: &[u32], every: u32| {
@@ -142,7 +142,7 @@ fn what_faults_remember_outlives_every_span_and_batch() {
     ] {
         let few = (episodes, "episodes = 5");
         let campaign = replaced(name, &[&brief[..], &[few]].concat());
-        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
         let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
         for (batch, steps) in [(None, Some(7)), (Some(2), Some(1))] {
             let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));

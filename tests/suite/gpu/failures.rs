@@ -4,7 +4,7 @@ use super::fly;
 use crate::common::{adapter_or_skip, gpu_or_skip};
 use crate::common::{altered, campaign};
 use std::process::Command;
-use urts_mc::backend::gpu::{Gpu, GpuError, GpuFlyer, Tuning, Wanted};
+use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning, Wanted};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 use urts_mc::reference::Reference;
@@ -22,7 +22,7 @@ fn small() -> (Campaign, Vec<Vec<LoopGains>>) {
             ),
         ],
     );
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     (campaign, gains)
 }
 
@@ -48,7 +48,7 @@ fn a_device_lost_in_the_middle_of_a_batch_is_an_error() {
         batch: None,
         steps: Some(100),
     };
-    let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, tuning).unwrap();
+    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, tuning).unwrap();
     let error = flyer.fly(0..6, &|_| gpu.destroy()).unwrap_err();
     assert_lost(&error, &gpu);
     // It stays lost.
@@ -60,7 +60,7 @@ fn a_device_lost_in_the_middle_of_a_batch_is_an_error() {
 fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
     let error = flyer.trace(&[3, 1], 10, &mut |_| gpu.destroy());
     assert_lost(&error.err().unwrap(), &gpu);
 }
@@ -69,11 +69,11 @@ fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
 fn a_device_lost_between_batches_or_before_the_first_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
     assert_eq!(flyer.fly(0..3, &|_| ()).unwrap().len(), 3);
     gpu.destroy();
     assert_lost(&flyer.fly(3..6, &|_| ()).unwrap_err(), &gpu);
-    let error = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).err();
+    let error = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err();
     assert_lost(&error.unwrap(), &gpu);
     // Another device of the same adapter is not concerned.
     let other = gpu_or_skip().unwrap();
@@ -99,7 +99,7 @@ fn shaders_that_do_not_compile_are_an_error_in_the_compilers_words() {
             assert!(text.contains(old), "{old}");
             text.replace(old, new)
         };
-        let refused = GpuFlyer::rewritten(&gpu, &campaign, &gains, Tuning::default(), &rewrite);
+        let refused = GpuSimulator::rewritten(&gpu, &campaign, &gains, Tuning::default(), &rewrite);
         match refused.err() {
             Some(GpuError::Shader { adapter, reason }) => {
                 assert_eq!(adapter, gpu.adapter().name);
@@ -139,9 +139,9 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
     if std::env::var_os(STARVED).is_some() {
         // The samples of so many episodes, of four groups under three controllers, take more than a gigabyte.
         let campaign = campaign("smoke");
-        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
         let gpu = Gpu::open(Wanted::Named(&name)).unwrap();
-        let mut flyer = GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+        let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
         let many: Vec<u32> = (0..30_000).collect();
         let error = flyer.trace(&many, 1, &mut |_| ()).err().unwrap();
         println!("{error}");
@@ -153,7 +153,7 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
     let (campaign, gains) = small();
     // A budget of nothing, where the driver tells how much of its memory is in use.
     let gpu = Gpu::open_within(Wanted::Named(&name), 0).unwrap();
-    match GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()) {
+    match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()) {
         Err(error) => assert_out_of_memory(&error, &gpu),
         // A software driver does not tell, but its memory is the process's own, which can be limited.
         Ok(_) if cfg!(unix) => {
@@ -237,8 +237,8 @@ fn a_team_too_large_for_a_workgroup_is_an_error_that_says_how_large() {
     let team = 2000;
     let mut campaign = with_team(campaign("scenario-b"), team);
     campaign.time.steps = 1;
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
-    match GpuFlyer::new(&gpu, &campaign, &gains, Tuning::default()).err() {
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err() {
         Some(GpuError::TooLarge {
             adapter,
             needed,

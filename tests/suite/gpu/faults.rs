@@ -78,7 +78,7 @@ fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands
     has_all(&campaign, &[]);
     // The contract alone: some of these flights are shaken so much that rounding grows beyond what calm ones show.
     let Some(gpu) = gpu_or_skip() else { return };
-    let gains = GainSet::obtain(&campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
     let flown = fly(&gpu, &campaign, &gains, Tuning::default());
     let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&flown);
     let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));

@@ -4,7 +4,7 @@
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
 use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixed_thrust};
 use crate::common::gpu_or_skip;
-use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
+use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 
@@ -59,8 +59,8 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "a square wave begins with the run",
-        "waves[k].held = switch_at(SINES + k, step);",
-        "waves[k].held = switch_value(SINES + k);",
+        "waves[k].held = window_at(SINES + k, step);",
+        "waves[k].held = window_value(SINES + k);",
     ),
     (
         "a sine turns twice as fast",
@@ -339,7 +339,7 @@ struct Ground {
 
 impl Ground {
     fn new(campaign: Campaign) -> Self {
-        let gains = GainSet::obtain(&campaign).unwrap().loops();
+        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
         let expected = [&TWIN, &CONTRACT].map(|against| Expected::new(&campaign, &gains, against));
         Self {
             campaign,
@@ -359,7 +359,8 @@ impl Ground {
             batch: None,
             steps: Some(300),
         };
-        let mut flyer = GpuFlyer::rewritten(gpu, &self.campaign, gains, tuning, rewrite).unwrap();
+        let mut flyer =
+            GpuSimulator::rewritten(gpu, &self.campaign, gains, tuning, rewrite).unwrap();
         // A batch that is out of order is noticed before its numbers are.
         let flown = fly_all(&mut flyer, &self.campaign).map_err(|error| error.to_string())?;
         let [single, double] = &self.expected;

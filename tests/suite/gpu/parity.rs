@@ -6,15 +6,15 @@ use super::{Gains, fly, mixed, mixed_thrust};
 use crate::common::altered;
 use crate::common::gpu_or_skip;
 use urts_mc::backend::cpu::{Cpu, Precision};
-use urts_mc::backend::gpu::{Gpu, GpuFlyer, Tuning};
+use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
-use urts_mc::model::Shown;
+use urts_mc::model::ChannelSample;
 
 /// Flies a campaign and demands agreement, in double and in single precision; none without an adapter.
 pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
     let gpu = gpu_or_skip()?;
-    let gains = GainSet::obtain(campaign).unwrap().loops();
+    let gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
     let flown = fly(&gpu, campaign, &gains, Tuning::default());
     for (k, one) in flown.iter().enumerate() {
         let mut before = flown[..k].iter();
@@ -169,7 +169,7 @@ fn val_a_team_of_64_agrees_though_its_references_take_turns_on_the_device() {
 }
 
 /// What is compared of a trajectory, and by how much it may differ.
-type Quantity = (&'static str, fn(&Shown) -> f64, f64);
+type Quantity = (&'static str, fn(&ChannelSample) -> f64, f64);
 const QUANTITIES: [Quantity; 9] = [
     // m or rad: the contract's for e; what is measured and estimated of the same unit may differ by as much.
     ("x", |shown| shown.x, 2e-4),
@@ -188,8 +188,8 @@ const QUANTITIES: [Quantity; 9] = [
 /// Follows some episodes of a campaign, every 20 ms, and demands that they agree with double precision and end as they do in
 /// a flight of all episodes; returns how many flights were followed to the end.
 pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
-    let gains: Gains = GainSet::obtain(campaign).unwrap().loops();
-    let mut flyer = GpuFlyer::new(gpu, campaign, &gains, Tuning::default()).unwrap();
+    let gains: Gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
+    let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
     let cpu = Cpu::new(campaign, &gains, Precision::F64, None);
     let mut instants = Vec::new();
     let traced = flyer

@@ -24,7 +24,7 @@ use link::{
 };
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-pub use uniforms::LegWords;
+pub use uniforms::LegUniforms;
 
 /// Joints of a leg.
 pub const LEG_JOINTS: usize = 6;

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 /// Twin of `Joint` in shaders/leg.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct JointWords {
+pub(crate) struct JointUniforms {
     angle: [f32; 4],
     lever: [f32; 4],
     lever_twice: [f32; 4],
@@ -17,12 +17,12 @@ pub(crate) struct JointWords {
 /// Twin of `LegModel` in shaders/leg.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
-pub struct LegWords {
-    joints: [JointWords; LEG_JOINTS],
+pub struct LegUniforms {
+    joints: [JointUniforms; LEG_JOINTS],
     pelvis: [f32; 4],
 }
 
-impl From<&Joint<f32>> for JointWords {
+impl From<&Joint<f32>> for JointUniforms {
     fn from(joint: &Joint<f32>) -> Self {
         let [sine, cosine] = joint.twist;
         let [x, y, z] = joint.lever;
@@ -39,11 +39,11 @@ impl From<&Joint<f32>> for JointWords {
     }
 }
 
-impl From<&LegModel<f32>> for LegWords {
+impl From<&LegModel<f32>> for LegUniforms {
     fn from(model: &LegModel<f32>) -> Self {
         let [across, along] = model.lift;
         Self {
-            joints: model.joints.each_ref().map(JointWords::from),
+            joints: model.joints.each_ref().map(JointUniforms::from),
             pelvis: [across, along, model.tip_inverse, 0.0],
         }
     }

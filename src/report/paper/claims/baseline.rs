@@ -4,7 +4,7 @@ use super::{
     Found, Grouped, SETTLED_S, grouped, own, quotients, rate, times, top, with_units,
     worst_of_groups,
 };
-use crate::report::paper::flights::{Flights, Flown};
+use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::rms;
 use crate::util::format::number;
 
@@ -14,19 +14,19 @@ const REVEALED: f64 = 5.0;
 const MUCH: f64 = 2.0;
 
 /// The amplitude of a channel's tracking error at a frequency.
-fn amplitude(flights: &Flights, flown: Flown, channel: usize, rad_s: f64) -> f64 {
+fn amplitude(flights: &Scenarios, flown: Scenario, channel: usize, rad_s: f64) -> f64 {
     let errors = flights.series(flown, channel, |shown| shown.e);
     errors.wave(rad_s, SETTLED_S).amplitude
 }
 
-fn amplitudes(flights: &Flights, flown: Flown, rad_s: f64) -> Grouped {
+fn amplitudes(flights: &Scenarios, flown: Scenario, rad_s: f64) -> Grouped {
     worst_of_groups(flights, |channel| amplitude(flights, flown, channel, rad_s))
 }
 
 /// The errors at the frequency of the disturbance, without and with the FTC.
-pub(super) fn revealed(flights: &Flights) -> Found {
+pub(super) fn revealed(flights: &Scenarios) -> Found {
     let rad_s = flights.met.force_rad_s;
-    let [pid, ftc] = [Flown::Pid, Flown::Ftc].map(|flown| amplitudes(flights, flown, rad_s));
+    let [pid, ftc] = [Scenario::Pid, Scenario::Ftc].map(|flown| amplitudes(flights, flown, rad_s));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(
@@ -42,9 +42,9 @@ pub(super) fn revealed(flights: &Flights) -> Found {
 }
 
 /// The errors at the frequency of the sensor fault beside those at the frequency of the disturbance.
-pub(super) fn insignificant(flights: &Flights) -> Found {
+pub(super) fn insignificant(flights: &Scenarios) -> Found {
     let (fault_rad_s, force_rad_s) = (flights.met.fault_rad_s(), flights.met.force_rad_s);
-    let of = |rad_s: f64| amplitudes(flights, Flown::Pid, rad_s);
+    let of = |rad_s: f64| amplitudes(flights, Scenario::Pid, rad_s);
     let (fault, force) = (of(fault_rad_s), of(force_rad_s));
     let shares = quotients(&fault, &force);
     Found {
@@ -62,10 +62,10 @@ pub(super) fn insignificant(flights: &Flights) -> Found {
 }
 
 /// The sizes of both faults, which have no unit in common.
-pub(super) fn smaller(flights: &Flights) -> Found {
-    let largest = |pick: fn(&crate::model::Shown) -> f64| {
+pub(super) fn smaller(flights: &Scenarios) -> Found {
+    let largest = |pick: fn(&crate::model::ChannelSample) -> f64| {
         worst_of_groups(flights, |channel| {
-            let series = flights.series(Flown::Ftc, channel, pick);
+            let series = flights.series(Scenario::Ftc, channel, pick);
             top(series.after(SETTLED_S).map(f64::abs))
         })
     };
@@ -83,11 +83,11 @@ pub(super) fn smaller(flights: &Flights) -> Found {
 
 /// The errors of some channels at the frequency of the sensor fault, beside its even harmonics: a symmetric square wave has only
 /// odd ones.
-pub(super) fn visible(flights: &Flights, channels: &[usize]) -> Found {
+pub(super) fn visible(flights: &Scenarios, channels: &[usize]) -> Found {
     let base_rad_s = flights.met.fault_rad_s();
     let of = |harmonic: f64| {
         let own = channels.iter();
-        top(own.map(|channel| amplitude(flights, Flown::Pid, *channel, harmonic * base_rad_s)))
+        top(own.map(|channel| amplitude(flights, Scenario::Pid, *channel, harmonic * base_rad_s)))
     };
     let [first, second, fourth] = [1.0, 2.0, 4.0].map(of);
     let unit = channels
@@ -110,16 +110,16 @@ pub(super) fn visible(flights: &Flights, channels: &[usize]) -> Found {
 }
 
 /// Whether the PID's flight ends within bounds.
-pub(super) fn stable(flights: &Flights) -> Found {
+pub(super) fn stable(flights: &Scenarios) -> Found {
     let largest = |from_s: f64, until_s: f64| {
         worst_of_groups(flights, |channel| {
-            let errors = flights.series(Flown::Pid, channel, |shown| shown.e);
+            let errors = flights.series(Scenario::Pid, channel, |shown| shown.e);
             errors.largest(from_s..until_s)
         })
     };
-    if let Some(lost_s) = flights.lost_s(Flown::Pid) {
+    if let Some(lost_s) = flights.lost_s(Scenario::Pid) {
         return Found {
-            measured: format!("{} diverges within {lost_s:.2} s", Flown::Pid.name()),
+            measured: format!("{} diverges within {lost_s:.2} s", Scenario::Pid.name()),
             holds: Some(false),
             read: Vec::new(),
         };
@@ -145,8 +145,8 @@ pub(super) fn stable(flights: &Flights) -> Found {
 }
 
 /// The RMS errors of both controllers.
-pub(super) fn worse(flights: &Flights) -> Found {
-    let of = |flown: Flown| {
+pub(super) fn worse(flights: &Scenarios) -> Found {
+    let of = |flown: Scenario| {
         grouped(flights, |channels| {
             rms(channels.iter().flat_map(|channel| {
                 let errors = flights.series(flown, *channel, |shown| shown.e);
@@ -154,7 +154,7 @@ pub(super) fn worse(flights: &Flights) -> Found {
             }))
         })
     };
-    let (ftc, pid) = (of(Flown::Ftc), of(Flown::Pid));
+    let (ftc, pid) = (of(Scenario::Ftc), of(Scenario::Pid));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(

@@ -4,8 +4,8 @@ use super::{
     BACK, Found, PEAK, SETTLED_S, STRETCH, back_s, calm, own, part, with_units, worst,
     worst_of_groups,
 };
-use crate::model::Shown;
-use crate::report::paper::flights::{Flights, Flown};
+use crate::model::ChannelSample;
+use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::{Series, percent, top};
 use std::ops::Range;
 
@@ -14,32 +14,32 @@ const BANDS: [f64; 2] = [0.10, 0.05];
 /// A steady state may vary by this factor.
 const STEADY: f64 = 1.5;
 
-fn error(shown: &Shown) -> f64 {
+fn error(shown: &ChannelSample) -> f64 {
     shown.e
 }
 
-fn estimation_error(shown: &Shown) -> f64 {
+fn estimation_error(shown: &ChannelSample) -> f64 {
     shown.e - shown.e_hat
 }
 
 /// What is left of the initial errors, as a share of them: the flight beside that without them.
-fn left(flights: &Flights, channel: usize, pick: fn(&Shown) -> f64) -> Series {
-    let with = flights.series(Flown::Ftc, channel, pick);
-    let without = flights.series(Flown::OnCourse, channel, pick);
+fn left(flights: &Scenarios, channel: usize, pick: fn(&ChannelSample) -> f64) -> Series {
+    let with = flights.series(Scenario::Ftc, channel, pick);
+    let without = flights.series(Scenario::OnCourse, channel, pick);
     let initial = flights.met.errors.get(channel).copied();
     with.less(&without).over(initial.unwrap_or(f64::NAN))
 }
 
 /// From where the paper has its errors settled to the first jump, s.
-fn first_stretch(flights: &Flights) -> Range<f64> {
+fn first_stretch(flights: &Scenarios) -> Range<f64> {
     let first_s = flights.jumps_s(SETTLED_S).first().copied();
     SETTLED_S..part(flights, first_s.unwrap_or_default(), PEAK).start
 }
 
 /// The largest error of the stretches between later jumps, in units of that before the first; on the worst channel.
-fn growth(flights: &Flights, pick: impl Fn(&Shown) -> f64) -> f64 {
+fn growth(flights: &Scenarios, pick: impl Fn(&ChannelSample) -> f64) -> f64 {
     worst(flights, |channel| {
-        let series = flights.series(Flown::Ftc, channel, &pick);
+        let series = flights.series(Scenario::Ftc, channel, &pick);
         let before = series.largest(first_stretch(flights));
         let jumps = flights.jumps_s(SETTLED_S).into_iter();
         top(jumps.map(|jump_s| series.largest(part(flights, jump_s, STRETCH)))) / before
@@ -47,7 +47,7 @@ fn growth(flights: &Flights, pick: impl Fn(&Shown) -> f64) -> f64 {
 }
 
 /// How fast the rest of the initial errors decays, 1/s.
-fn decay(flights: &Flights) -> f64 {
+fn decay(flights: &Scenarios) -> f64 {
     let half_s = flights.met.half_period_s();
     let end_s = flights.end_s();
     let at = |from_s: f64| {
@@ -59,7 +59,7 @@ fn decay(flights: &Flights) -> f64 {
 }
 
 /// What is left of the initial tracking errors after a time, and whether the errors grow later.
-pub(super) fn tracking(flights: &Flights, within_s: f64) -> Found {
+pub(super) fn tracking(flights: &Scenarios, within_s: f64) -> Found {
     let whole = 0.0..f64::INFINITY;
     let share = worst(flights, |channel| {
         left(flights, channel, error).largest(within_s..f64::INFINITY)
@@ -88,18 +88,18 @@ pub(super) fn tracking(flights: &Flights, within_s: f64) -> Found {
 }
 
 /// When the estimation errors are at their own calm level for the first time, and what the initial errors have to do with them.
-pub(super) fn estimation(flights: &Flights, within_s: f64) -> Found {
+pub(super) fn estimation(flights: &Scenarios, within_s: f64) -> Found {
     let share = worst(flights, |channel| {
         left(flights, channel, estimation_error).largest(0.0..f64::INFINITY)
     });
     // What follows the start is like it: later stretches, where a robot stands still, would be too calm a measure of its walk.
     let begin_s = worst(flights, |channel| {
-        let series = flights.series(Flown::Ftc, channel, estimation_error);
+        let series = flights.series(Scenario::Ftc, channel, estimation_error);
         let steady = series.largest(first_stretch(flights));
         series.last_above(BACK * steady, 0.0..SETTLED_S)
     });
     let peaks = worst_of_groups(flights, |channel| {
-        let series = flights.series(Flown::Ftc, channel, estimation_error);
+        let series = flights.series(Scenario::Ftc, channel, estimation_error);
         series.largest(0.0..SETTLED_S)
     });
     let growth = growth(flights, estimation_error);
@@ -117,14 +117,14 @@ pub(super) fn estimation(flights: &Flights, within_s: f64) -> Found {
 }
 
 /// The peaks of a curve around the jumps of the sensor fault.
-fn peak(flights: &Flights, series: &Series) -> f64 {
+fn peak(flights: &Scenarios, series: &Series) -> f64 {
     let jumps = flights.jumps_s(SETTLED_S).into_iter();
     top(jumps.map(|jump_s| series.largest(part(flights, jump_s, PEAK))))
 }
 
 /// How large the errors become at the jumps, and how soon they are back.
-pub(super) fn jitter(flights: &Flights) -> Found {
-    let of = |channel: usize| flights.series(Flown::Ftc, channel, error);
+pub(super) fn jitter(flights: &Scenarios) -> Found {
+    let of = |channel: usize| flights.series(Scenario::Ftc, channel, error);
     let peaks = worst_of_groups(flights, |channel| peak(flights, &of(channel)));
     let back_s = worst(flights, |channel| back_s(flights, &of(channel)));
     Found {
@@ -139,8 +139,8 @@ pub(super) fn jitter(flights: &Flights) -> Found {
 }
 
 /// Whether errors stay at their calm level, between the jumps and at them.
-pub(super) fn kept(flights: &Flights, pick: fn(&Shown) -> f64) -> Found {
-    let of = |channel: usize| flights.series(Flown::Ftc, channel, pick);
+pub(super) fn kept(flights: &Scenarios, pick: fn(&ChannelSample) -> f64) -> Found {
+    let of = |channel: usize| flights.series(Scenario::Ftc, channel, pick);
     let growth = growth(flights, pick);
     let peaks = worst_of_groups(flights, |channel| peak(flights, &of(channel)));
     let factor = worst(flights, |channel| {

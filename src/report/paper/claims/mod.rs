@@ -4,10 +4,10 @@ mod baseline;
 mod errors;
 mod signals;
 
-use super::flights::{Flights, Flown};
+use super::flights::{Scenario, Scenarios};
 use super::measures::{Series, top};
 use crate::util::format::number;
-use Flown::{Ftc, OnCourse, Pid};
+use Scenario::{Ftc, OnCourse, Pid};
 
 /// Where the paper has the errors of its UAV settled, s.
 const SETTLED_S: f64 = 2.0;
@@ -42,7 +42,7 @@ struct Found {
 
 /// All claims that numbers can decide, and those of which it is worth saying that they cannot.
 #[must_use]
-pub fn claims(uavs: &Flights, robots: &Flights) -> Vec<Claim> {
+pub fn claims(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
     vec![
         decide(
             "Fig. 11",
@@ -248,9 +248,9 @@ pub fn claims(uavs: &Flights, robots: &Flights) -> Vec<Claim> {
 fn decide(
     place: &'static str,
     claim: &'static str,
-    flights: &Flights,
-    reads: &[Flown],
-    judge: impl Fn(&Flights) -> Found,
+    flights: &Scenarios,
+    reads: &[Scenario],
+    judge: impl Fn(&Scenarios) -> Found,
 ) -> Claim {
     let lost = reads
         .iter()
@@ -275,19 +275,19 @@ fn decide(
     }
 }
 
-fn channels(flights: &Flights) -> std::ops::Range<usize> {
+fn channels(flights: &Scenarios) -> std::ops::Range<usize> {
     0..flights.campaign.channels().len()
 }
 
 /// The largest value over channels, of quantities without a unit.
-fn worst(flights: &Flights, of: impl Fn(usize) -> f64) -> f64 {
+fn worst(flights: &Scenarios, of: impl Fn(usize) -> f64) -> f64 {
     top(channels(flights).map(of))
 }
 
 /// A number of each group of channels, and the unit of its errors: metres and radians are never mixed.
 type Grouped = Vec<(f64, &'static str)>;
 
-fn grouped(flights: &Flights, of: impl Fn(&[usize]) -> f64) -> Grouped {
+fn grouped(flights: &Scenarios, of: impl Fn(&[usize]) -> f64) -> Grouped {
     let groups = flights.campaign.channel_groups().into_iter();
     groups
         .map(|group| {
@@ -298,7 +298,7 @@ fn grouped(flights: &Flights, of: impl Fn(&[usize]) -> f64) -> Grouped {
 }
 
 /// The largest value over each group's channels.
-fn worst_of_groups(flights: &Flights, of: impl Fn(usize) -> f64) -> Grouped {
+fn worst_of_groups(flights: &Scenarios, of: impl Fn(usize) -> f64) -> Grouped {
     grouped(flights, |channels| {
         top(channels.iter().map(|channel| of(*channel)))
     })
@@ -344,19 +344,19 @@ const STRETCH: [f64; 2] = [0.4, 0.9];
 const BACK: f64 = 1.5;
 
 /// A part of the time after a jump, s.
-fn part(flights: &Flights, jump_s: f64, shares: [f64; 2]) -> std::ops::Range<f64> {
+fn part(flights: &Scenarios, jump_s: f64, shares: [f64; 2]) -> std::ops::Range<f64> {
     let [from_s, until_s] = shares.map(|share| jump_s + share * flights.met.half_period_s());
     from_s..until_s
 }
 
 /// A curve's calm level: its largest size in the calm parts.
-fn calm(flights: &Flights, series: &Series) -> f64 {
+fn calm(flights: &Scenarios, series: &Series) -> f64 {
     let jumps = flights.jumps_s(SETTLED_S).into_iter();
     top(jumps.map(|jump_s| series.largest(part(flights, jump_s, CALM))))
 }
 
 /// How soon after the jumps a curve is back at its calm level, s; the longest.
-fn back_s(flights: &Flights, series: &Series) -> f64 {
+fn back_s(flights: &Scenarios, series: &Series) -> f64 {
     let bound = BACK * calm(flights, series);
     let jumps = flights.jumps_s(SETTLED_S).into_iter();
     top(jumps.map(|jump_s| {

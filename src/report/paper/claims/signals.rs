@@ -5,7 +5,7 @@ use super::{
     with_units, worst, worst_of_groups,
 };
 use crate::agent::Agent;
-use crate::report::paper::flights::{Flights, Flown};
+use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::{Series, bottom, percent, rms, top};
 use crate::util::format::number;
 
@@ -21,20 +21,20 @@ const SINE: f64 = 0.9;
 const CONSTANT: f64 = 0.1;
 
 /// The unit of the control in a channel of m or rad of an agent.
-fn effort(flights: &Flights) -> impl Fn(&str) -> String {
+fn effort(flights: &Scenarios) -> impl Fn(&str) -> String {
     let robot = matches!(flights.campaign.agent, Agent::Biped(_));
     move |unit| if unit == "m" && !robot { "N" } else { "N m" }.into()
 }
 
-fn control(flights: &Flights, channel: usize) -> Series {
-    flights.series(Flown::Ftc, channel, |shown| shown.u)
+fn control(flights: &Scenarios, channel: usize) -> Series {
+    flights.series(Scenario::Ftc, channel, |shown| shown.u)
 }
 
 /// How wrong the estimate of f1 is.
-pub(super) fn estimated(flights: &Flights) -> Found {
+pub(super) fn estimated(flights: &Scenarios) -> Found {
     let share = worst(flights, |channel| {
-        let truth = flights.series(Flown::Ftc, channel, |shown| shown.f1);
-        let wrong = flights.series(Flown::Ftc, channel, |shown| shown.f1_hat - shown.f1);
+        let truth = flights.series(Scenario::Ftc, channel, |shown| shown.f1);
+        let wrong = flights.series(Scenario::Ftc, channel, |shown| shown.f1_hat - shown.f1);
         rms(wrong.after(SETTLED_S)) / rms(truth.after(SETTLED_S))
     });
     Found {
@@ -49,16 +49,16 @@ pub(super) fn estimated(flights: &Flights) -> Found {
 }
 
 /// How far the estimate of f2 overshoots where f2 jumps, and how soon its error is at its own calm level again.
-pub(super) fn overshoot(flights: &Flights) -> Found {
+pub(super) fn overshoot(flights: &Scenarios) -> Found {
     let size = flights.met.fault.abs();
     let over = worst(flights, |channel| {
-        let estimate = flights.series(Flown::Ftc, channel, |shown| shown.f2_hat);
+        let estimate = flights.series(Scenario::Ftc, channel, |shown| shown.f2_hat);
         let jumps = flights.jumps_s(SETTLED_S).into_iter();
         top(jumps
             .map(|jump_s| estimate.largest(part(flights, jump_s, [PEAK[0], CALM[0]])) / size - 1.0))
     });
     let wrong =
-        |channel: usize| flights.series(Flown::Ftc, channel, |shown| shown.f2_hat - shown.f2);
+        |channel: usize| flights.series(Scenario::Ftc, channel, |shown| shown.f2_hat - shown.f2);
     let calm = worst(flights, |channel| calm(flights, &wrong(channel))) / size;
     let back_s = worst(flights, |channel| back_s(flights, &wrong(channel)));
     Found {
@@ -74,7 +74,7 @@ pub(super) fn overshoot(flights: &Flights) -> Found {
 }
 
 /// How the control starts, beside how it goes on.
-pub(super) fn start(flights: &Flights) -> Found {
+pub(super) fn start(flights: &Scenarios) -> Found {
     let largest = |from_s: f64, until_s: f64| {
         worst_of_groups(flights, |channel| {
             control(flights, channel).largest(from_s..until_s)
@@ -125,7 +125,7 @@ pub(super) fn start(flights: &Flights) -> Found {
 }
 
 /// How much of the control is a sine that cancels the disturbance.
-pub(super) fn sine(flights: &Flights) -> Found {
+pub(super) fn sine(flights: &Scenarios) -> Found {
     let force = flights.met.force.abs();
     let waves = channels(flights)
         .map(|channel| control(flights, channel).wave(flights.met.force_rad_s, SETTLED_S));
@@ -149,7 +149,7 @@ pub(super) fn sine(flights: &Flights) -> Found {
 }
 
 /// The size of the force that a UAV's controls demand, beside its weight.
-pub(super) fn thrust(flights: &Flights) -> Found {
+pub(super) fn thrust(flights: &Scenarios) -> Found {
     let weight = match &flights.campaign.agent {
         Agent::Uav(uav) => uav.mass_kg * uav.gravity_m_s2 * flights.met.mass_scale,
         Agent::Biped(_) => f64::NAN,
