@@ -20,7 +20,9 @@
 //! | `faults` | every kind of fault and disturbance, and every option of the loop, against its definition |
 //! | `attenuation` | inequality (24) of the paper on flights, against plain formulas |
 //! | `determinism` | the same bytes for any thread count, width and length; replay |
+//! | `digests` | the bytes of every shipped campaign's tables, against an earlier version's |
 //! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
+//! | `house` | the layout of the sources: order of the rooms, circles, sizes |
 //! | `flight` | flights whose GPU fails |
 //! | `lanes` | elementary functions, phases and selections on every lane type |
 //! | `model` | order of the integration, limits, noise, draws |
@@ -52,9 +54,11 @@ mod campaigns;
 mod comparison;
 mod designs;
 mod determinism;
+mod digests;
 mod faults;
 mod flight;
 mod gpu;
+mod house;
 mod lanes;
 mod lapack;
 mod leg;
