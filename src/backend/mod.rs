@@ -1,4 +1,6 @@
 //! Where episodes are flown: draws in, outcomes out.
+//!
+#![doc = include_str!("README.md")]
 
 pub mod cpu;
 pub mod gpu;

@@ -3,6 +3,8 @@
 //! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator`, in which each `agent`'s `plant`
 //! answers its `controller`, and the sums of `metric`. [`episode`] builds groups from draws (`condition`, `fault`) and collects
 //! their outcomes.
+//!
+#![doc = include_str!("README.md")]
 
 pub(crate) mod agent;
 pub mod controller;

@@ -24,6 +24,8 @@
 //! Counts beyond their total are read as the total. A `level` is a two-sided confidence level in
 //! (0, 1) unless a function says otherwise; any other level is a demand for certainty, which only
 //! the widest interval (or `None`) meets.
+//!
+#![doc = include_str!("README.md")]
 
 mod binomial;
 mod correlation;

@@ -8,6 +8,8 @@
 //!
 //! Nothing here falls back silently: [`synthesize`] returns gains that passed
 //! every check, or an error that says which step failed and what to change.
+//!
+#![doc = include_str!("README.md")]
 
 mod certificate;
 mod channel;

@@ -1,15 +1,23 @@
-//! What the README tells its readers to type really works.
+//! What the README and the texts beside it tell their readers to type really works.
 
 use crate::common::repository;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Campaign, FaultKind};
 
-/// The README's blocks in a language.
-fn blocks(language: &str) -> Vec<String> {
-    let text = fs::read_to_string(repository("README.md")).unwrap();
+/// The texts that tell their readers what to type.
+const TEXTS: [&str; 4] = [
+    "README.md",
+    ".github/CONTRIBUTING.md",
+    "campaigns/README.md",
+    "src/backend/README.md",
+];
+
+/// A text's blocks in a language.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let text = fs::read_to_string(repository(text)).unwrap();
     let opening = format!("\n```{language}\n");
     let begun = text.split(&opening).skip(1);
     begun
@@ -17,9 +25,9 @@ fn blocks(language: &str) -> Vec<String> {
         .collect()
 }
 
-/// The lines of the README's shell blocks, without their comments.
+/// The lines of the shell blocks of all texts, without their comments.
 fn commands() -> Vec<String> {
-    let lines = blocks("sh");
+    let lines = TEXTS.map(|text| blocks(text, "sh")).concat();
     let lines = lines.iter().flat_map(|block| block.lines());
     lines
         .map(|line| line.split(" #").next().unwrap().trim().to_string())
@@ -90,7 +98,7 @@ fn every_command_of_the_readme_works() {
 
 #[test]
 fn the_campaign_of_the_readme_is_one() {
-    let blocks = blocks("toml");
+    let blocks = blocks("README.md", "toml");
     assert_eq!(blocks.len(), 1);
     let campaign = Campaign::parse(&blocks[0], Path::new("README.toml")).unwrap();
     assert_eq!(campaign.controllers.len(), 3);
@@ -101,6 +109,89 @@ fn the_campaign_of_the_readme_is_one() {
         let line = line.split(" #").next().unwrap().trim();
         assert!(shipped.contains(line), "{line}");
     }
+}
+
+#[test]
+fn every_part_of_a_campaign_in_the_campaigns_readme_is_one() {
+    let shipped = fs::read_to_string(repository("campaigns/uav-paper.toml")).unwrap();
+    let whole = shipped.split("[[require]]").next().unwrap();
+    let parts = blocks("campaigns/README.md", "toml");
+    assert!(parts.len() >= 4, "{}", parts.len());
+    for part in parts {
+        let text = format!("{whole}{part}");
+        let read = Campaign::parse(&text, Path::new("campaigns/README.toml"));
+        assert!(read.is_ok(), "{part}\n{}", read.unwrap_err());
+    }
+}
+
+/// The places of this repository that a text names in backticks or links to.
+fn places(text: &str) -> Vec<String> {
+    let folders = [
+        "src/",
+        "tests/",
+        "shaders/",
+        "campaigns/",
+        ".ci/",
+        ".cargo/",
+        ".github/",
+    ];
+    let quoted = text.split('`').skip(1).step_by(2);
+    let linked = text.split("](").skip(1);
+    let linked = linked.map(|rest| rest.split(')').next().unwrap());
+    let words = quoted.chain(linked).flat_map(str::split_whitespace);
+    words
+        .filter(|word| folders.iter().any(|folder| word.starts_with(folder)))
+        .filter(|word| !word.contains(['<', '*']))
+        .map(String::from)
+        .collect()
+}
+
+#[test]
+fn every_file_that_the_texts_name_is_there() {
+    let others = [
+        ".github/SECURITY.md",
+        "CHANGELOG.md",
+        "shaders/README.md",
+        "src/statistics/README.md",
+    ];
+    let mut found = 0;
+    for text in TEXTS.into_iter().chain(others) {
+        for place in places(&fs::read_to_string(repository(text)).unwrap()) {
+            assert!(repository(&place).exists(), "{text} names {place}");
+            found += 1;
+        }
+    }
+    assert!(found >= 30, "{found}");
+}
+
+#[test]
+fn the_shaders_readme_has_a_line_for_every_shader() {
+    let text = fs::read_to_string(repository("shaders/README.md")).unwrap();
+    let rows = text.lines().filter_map(|line| line.strip_prefix("| "));
+    let rows = rows.skip(1).take_while(|row| row.contains(" | "));
+    let named = rows.flat_map(|row| row.split(" | ").next().unwrap().split(", "));
+    let mut named: Vec<String> = named.map(|name| format!("{}.wgsl", name.trim())).collect();
+    let entries = fs::read_dir(repository("shaders")).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut there: Vec<String> = names.filter(|name| name.ends_with(".wgsl")).collect();
+    named.sort_unstable();
+    there.sort_unstable();
+    assert_eq!(named, there);
+}
+
+#[test]
+fn the_campaigns_readme_names_every_kind_of_fault() {
+    let text = fs::read_to_string(repository("campaigns/README.md")).unwrap();
+    for kind in FaultKind::ALL {
+        let name = format!("`{}`", kind.name());
+        assert!(text.contains(&name), "{name}");
+    }
+}
+
+#[test]
+fn the_readme_is_short() {
+    let text = fs::read_to_string(repository("README.md")).unwrap();
+    assert!(text.lines().count() <= 250, "{}", text.lines().count());
 }
 
 #[test]
@@ -123,7 +214,7 @@ fn the_python_of_the_readme_runs_and_its_tables_are_right() {
         "run campaigns/smoke.toml --quiet --backend cpu",
     );
     assert!(output.status.success());
-    let blocks = blocks("python");
+    let blocks = blocks("README.md", "python");
     assert_eq!(blocks.len(), 3);
     let mut said = Vec::new();
     for block in blocks {

@@ -1,10 +1,7 @@
 //! The GPU backend: batches of episodes through the compute shaders of `shaders/`, single precision. This folder alone
 //! names wgpu.
 //!
-//! An invocation is one channel of one agent in one episode under one controller; a workgroup holds the channels that act on
-//! each other, of whole teams. The controllers of a batch fly side by side in one submission, on the same draws. The state
-//! stays on the device while the steps are submitted in spans short enough for a display driver; neither the spans nor the
-//! batches show in the result. shaders/README.md counts registers, bytes and operations.
+#![doc = include_str!("../../../shaders/README.md")]
 
 mod adapter;
 mod batch;

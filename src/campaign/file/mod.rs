@@ -277,7 +277,7 @@ pub struct NamedGainsFile {
     pub controller: Option<String>,
 }
 
-/// Overrides of a preset's weights; see section 2 of the model in README.md.
+/// Overrides of a preset's weights; what they mean is in src/synthesis/README.md.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WeightsFile {

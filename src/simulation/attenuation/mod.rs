@@ -1,8 +1,7 @@
 //! The theorem beside the experiment: the attenuation that a flight under the fault-tolerant controller shows, inequality (24)
 //! of the paper, beside the level that its gains certify.
 //!
-//! Per agent and channel: the square root of the left side of (24) without V(0), and whether (24) holds with it. The theorem
-//! is about linear channels whose faults move smoothly; where a flight is something else, this says so and why.
+#![doc = include_str!("README.md")]
 
 mod applicability;
 mod channel;
