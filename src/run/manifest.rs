@@ -55,7 +55,7 @@ pub struct Manifest {
     /// Who does better, a sentence for each opponent of the first controller; empty in runs of older versions.
     #[serde(default)]
     pub verdict: Vec<String>,
-    /// What the strata do to each controller, in sentences ([`crate::results::worst_fault`]); empty without strata to compare.
+    /// What the strata do to each controller, in sentences (`results::worst_fault`); empty without strata to compare.
     #[serde(default)]
     pub harm: Vec<String>,
     /// Wall-clock times.

@@ -10,7 +10,7 @@
 //!   right angles, and a right twist only renames coordinates.
 //! - Mass on a joint's axis may as well belong to the link before. Moved there (the base parameters of Gautier and Khalil),
 //!   it leaves the links without mass, first moment along z, and second moment zz.
-//! - Inertia is the second moments J = int r r' dm. With the spin U = [w']x + [w]x [w]x of a link and the acceleration a of
+//! - Inertia is the second moments J = int r r' dm. With the spin U = `[w']x + [w]x [w]x` of a link and the acceleration a of
 //!   its origin, its points accelerate by a + U r: its force is U h, its moment h x a + int r x U r dm.
 
 mod frames;
