@@ -51,10 +51,10 @@ fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> O
     let episodes = if n == 1 { "episode" } else { "episodes" };
     let remedy = match (enough, place) {
         (Some(enough), Some(place)) if !of_stratum.is_empty() => format!(
-            "fly at least {} episodes, {enough} of them there",
+            "simulate at least {} episodes, {enough} of them there",
             strata.episodes_for(place, enough)
         ),
-        (Some(enough), _) => format!("fly at least {enough}"),
+        (Some(enough), _) => format!("simulate at least {enough}"),
         (None, _) => "no number of episodes does".to_string(),
     };
     Some(format!(

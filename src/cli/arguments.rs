@@ -37,14 +37,14 @@ fn first_steps() -> StyledStr {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Fly a campaign and write its tables and its report
+    /// Simulate a campaign and write its tables and its report
     #[command(after_help = examples(&[
         "urts-mc run campaigns/smoke.toml",
         "urts-mc run campaigns/uav-paper.toml --episodes 256 --backend cpu --out reports/trial",
         "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
     ]))]
     Run(RunArguments),
-    /// Check a campaign, synthesize its gains and show what would be drawn; flies nothing
+    /// Check a campaign, synthesize its gains and show what would be drawn; simulates nothing
     #[command(after_help = examples(&[
         "urts-mc check campaigns/uav-paper.toml",
         "urts-mc check campaigns/uav-paper.toml --episodes 4096 --json",
@@ -56,7 +56,7 @@ pub(crate) enum Command {
         "urts-mc synthesize --preset biped-paper --json",
     ]))]
     Synthesize(SynthesizeArguments),
-    /// Fly one episode of a run again and write its trajectories
+    /// Simulate one episode of a run again and write its trajectories
     #[command(after_help = examples(&[
         "urts-mc replay reports/smoke --episode 9 --controller pid",
         "urts-mc replay reports/smoke --episode 3 --interval 0.05 --out episode-3.parquet",
@@ -114,7 +114,7 @@ pub(crate) enum Command {
 pub(crate) struct Overrides {
     /// The campaign file
     pub(crate) campaign: PathBuf,
-    /// Fly this many episodes instead of the campaign's
+    /// Simulate this many episodes instead of the campaign's
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) episodes: Option<u32>,
     /// Use this seed instead of the campaign's
@@ -126,7 +126,7 @@ pub(crate) struct Overrides {
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
-    /// Where to fly: auto takes a hardware GPU if there is one,
+    /// Where to simulate: auto takes a hardware GPU if there is one,
     /// and the CPU otherwise
     #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
     pub(crate) backend: BackendChoice,
@@ -153,7 +153,7 @@ pub(crate) struct RunArguments {
         verbatim_doc_comment
     )]
     pub(crate) simd: SimdChoice,
-    /// Fly N random episodes again on the CPU in f64, and fail if they
+    /// Simulate N random episodes again on the CPU in f64, and fail if they
     /// differ [default: 32 on a GPU, 0 on the CPU]
     #[arg(
         long,
@@ -179,7 +179,7 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Write a JUnit file for CI systems: a test case for each [[require]],
-    /// the cross-check and the flight
+    /// the cross-check and the simulation
     #[arg(long, value_name = "FILE", verbatim_doc_comment)]
     pub(crate) junit: Option<PathBuf>,
     /// Print nothing but errors and what --json asks for

@@ -311,7 +311,7 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
     if out.is_some() {
         files.may_be_written(*overwrite)?;
     }
-    let shown = ProgressLine::of_work("flying the episode again", *quiet);
+    let shown = ProgressLine::of_work("simulating the episode again", *quiet);
     let replayed = replay(run, *episode, controller, *interval);
     drop(shown);
     let replayed = replayed?;

@@ -80,7 +80,7 @@ fn of_flight(may_stop: bool) -> ProgressStyle {
     let rate = |state: &ProgressState, text: &mut dyn Write| {
         // Writing to a terminal's line cannot fail here; the next drawing replaces it.
         let _ = match state.pos() {
-            0 => write!(text, "flying"),
+            0 => write!(text, "simulating"),
             _ => write!(text, "{:.0} a second", state.per_sec()),
         };
     };

@@ -24,8 +24,8 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
         suite.add_property((name, &**value));
     }
     let interrupted = missing(manifest, out)
-        .map(|message| (NonSuccessKind::Error, "interrupted flight", message));
-    suite.add_test_case(case(campaign, "flight", manifest.times.loop_s, interrupted));
+        .map(|message| (NonSuccessKind::Error, "interrupted simulation", message));
+    suite.add_test_case(case(campaign, "simulation", manifest.times.loop_s, interrupted));
     let error = unchecked(manifest).map(|message| (NonSuccessKind::Error, "cross-check", message));
     let failure =
         differing(manifest).map(|message| (NonSuccessKind::Failure, "cross-check", message));
@@ -63,7 +63,7 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
 pub fn junit_of_error(campaign: &str, message: String) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(campaign);
     let found = (NonSuccessKind::Error, "run", message);
-    suite.add_test_case(case(campaign, "flight", 0.0, Some(found)));
+    suite.add_test_case(case(campaign, "simulation", 0.0, Some(found)));
     report(suite)
 }
 

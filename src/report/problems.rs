@@ -95,9 +95,9 @@ pub(crate) fn reason(manifest: &Manifest, result: &RequirementResult) -> String 
         None => runs_needed,
     };
     let remedy = match needed(result.limit, LEVEL, result.failed) {
-        Some(enough) if result.failed == 0 => format!("fly at least {enough} episodes"),
+        Some(enough) if result.failed == 0 => format!("simulate at least {enough} episodes"),
         Some(enough) if result.rate() < result.limit => format!(
-            "fly at least {enough} episodes, of which no more may fail, or change the controller or the limit"
+            "simulate at least {enough} episodes, of which no more may fail, or change the controller or the limit"
         ),
         _ => "change the controller or the limit".to_string(),
     };

@@ -186,7 +186,7 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
         Backend::Auto => match Gpu::open(Wanted::Hardware) {
             Ok(gpu) => gpu,
             Err(GpuError::NoHardware { .. }) => return Ok((None, Vec::new())),
-            Err(error) => return Ok((None, vec![format!("the CPU flew all episodes: {error}")])),
+            Err(error) => return Ok((None, vec![format!("the CPU simulated all episodes: {error}")])),
         },
     };
     Ok((Some(opened), Vec::new()))
@@ -230,7 +230,7 @@ pub fn fly(
         match failure {
             None => {}
             Some(error) if options.backend == Backend::Auto => flight.notes.push(format!(
-                "the GPU failed after {flown} of {} episodes, which are not cross-checked, and the CPU flew the others: {error}",
+                "the GPU failed after {flown} of {} episodes, which are not cross-checked, and the CPU simulated the others: {error}",
                 campaign.episodes
             )),
             Some(error) if flown == 0 => return Err(SimulationError::Gpu(error)),

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use value::{some_table, some_tables, some_word, table, tables, word};
 
-/// A campaign: which closed loop flies, what disturbs it, how often, and what counts as failure.
+/// A campaign: which closed loop is simulated, what disturbs it, how often, and what counts as failure.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CampaignFile {

@@ -127,7 +127,7 @@ impl Check<'_> {
                     strata.all().len(),
                     strata.turn()
                 ),
-                "fly more, or give smaller shares",
+                "simulate more, or give smaller shares",
             ));
         }
         Ok(strata)

@@ -87,7 +87,7 @@ impl Check<'_> {
             return Ok(());
         }
         let remedy = fitting.map_or("take fewer replicates".to_string(), |fitting| {
-            format!("fly {fitting} episodes, or change sampling.replicates")
+            format!("simulate {fitting} episodes, or change sampling.replicates")
         });
         Err(self.invalid(
             "episodes",

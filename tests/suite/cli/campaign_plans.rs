@@ -60,7 +60,7 @@ fn strata_and_names_that_cannot_be_are_refused() {
         ),
         (
             r#"[[strata]]\nfaults = []\nshare = 4"#,
-            "episodes (line 4) = 3 ~ take 4 episodes to go round once ~ fly more",
+            "episodes (line 4) = 3 ~ take 4 episodes to go round once ~ simulate more",
         ),
         (
             r#"[[strata]]\nfaults = ["sensor smoothed square"]"#,
@@ -118,15 +118,15 @@ fn designs_and_stops_that_cannot_be_are_refused() {
         ),
         (
             lhs.to_string(),
-            "episodes (line 4) = 3: sampling.replicates = 8 makes 8 hypercubes of equal size ~ fly 16 episodes",
+            "episodes (line 4) = 3: sampling.replicates = 8 makes 8 hypercubes of equal size ~ simulate 16 episodes",
         ),
         (
             format!("{lhs}replicates = 2\\n"),
-            "2 hypercubes of equal size, 2 or more; fly 4 episodes",
+            "2 hypercubes of equal size, 2 or more; simulate 4 episodes",
         ),
         (
             format!("{sobol}replicates = 1\\n"),
-            "makes 1 nets, each of a power of two of episodes; fly 4 episodes",
+            "makes 1 nets, each of a power of two of episodes; simulate 4 episodes",
         ),
         (
             format!("{sobol}replicates = 0\\n"),
@@ -195,6 +195,6 @@ fn designs_and_stops_that_cannot_be_are_refused() {
     Place::with(&sampled).refuses(
         &["run", "c.toml", "--episodes", "6"],
         2,
-        &["episodes (line 4) = 6", "fly 8 episodes"],
+        &["episodes (line 4) = 6", "simulate 8 episodes"],
     );
 }

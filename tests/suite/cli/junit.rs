@@ -115,7 +115,7 @@ fn each_requirement_is_a_test_case_that_passes_or_fails_with_its_numbers() {
     assert_eq!(
         names,
         [
-            "flight",
+            "simulation",
             "require[0]: failure rate of ftc below 0.64",
             "require[1]: failure rate of pid below 0.5",
         ]

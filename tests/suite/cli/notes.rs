@@ -23,7 +23,7 @@ fn said_of(text: &str) -> Vec<String> {
 
 #[test]
 fn a_requirement_that_so_few_episodes_cannot_prove_is_told_with_the_number_that_can() {
-    let note = "require[0].failure_rate_upper_95 = 0.05: 40 episodes cannot prove it, even if \"ftc\" fails in none; fly at least 59";
+    let note = "require[0].failure_rate_upper_95 = 0.05: 40 episodes cannot prove it, even if \"ftc\" fails in none; simulate at least 59";
     let place = Place::with(&required(40, "0.05", ""));
     let said = place.succeeds(&["check", "c.toml"]);
     assert!(said.ends_with(&format!("\nnote: {note}\n")), "{said}");
@@ -64,14 +64,14 @@ fn a_requirement_on_a_stratum_or_beside_a_stop_takes_more_episodes() {
     let said = said_of(&required(176, "0.05", stratum));
     assert!(
         said[0].contains(": 58 episodes of the stratum \"none\" cannot prove it")
-            && said[0].ends_with("; fly at least 177 episodes, 59 of them there"),
+            && said[0].ends_with("; simulate at least 177 episodes, 59 of them there"),
         "{said:?}"
     );
     assert!(said_of(&required(177, "0.05", stratum)).is_empty());
     // Whoever looks again and again needs 449 instead of 299 (src/statistics/sequential.rs).
     let stop = "[stop]\ncontroller = \"ftc\"\nfailure_rate_below = 0.01";
     let said = said_of(&required(448, "0.01", stop));
-    assert!(said[0].ends_with("; fly at least 449"), "{said:?}");
+    assert!(said[0].ends_with("; simulate at least 449"), "{said:?}");
     assert!(said_of(&required(449, "0.01", stop)).is_empty());
     assert!(said_of(&required(299, "0.01", "")).is_empty());
 }

@@ -209,7 +209,7 @@ fn a_requirement_that_does_not_hold_exits_with_4_after_writing_everything() {
             "error: c.toml: require[0].failure_rate_upper_95 = 0.02: ",
             "\"ftc\" failed in 0 of 3 episodes",
             "below 0.6316",
-            "fly at least 149 episodes",
+            "simulate at least 149 episodes",
         ] {
             assert!(said.contains(word), "{word:?} is missing from: {said}");
         }
