@@ -9,6 +9,7 @@
 //! | `controls`, `changes` | one change of the shaders at a time, and the probe that must notice |
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
 //! | `leg` | the dynamics of a robot's leg |
+//! | `iterations` | how often loops run, against the bound that keeps dispatches short enough for software drivers |
 //! | `vortex` | the jets of rotors |
 //! | `world`, `states`, `image` | teams in random states, and how their state travels |
 //!
@@ -31,6 +32,7 @@ mod controls;
 mod groups;
 mod harness;
 mod image;
+mod iterations;
 mod layout;
 mod leg;
 mod loops;

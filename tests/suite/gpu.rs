@@ -7,6 +7,7 @@
 //! | `faults` | all faults and disturbances at once |
 //! | `mutations` | changed shaders and gains, each of which that comparison must notice |
 //! | `determinism` | the same bits for any batch, span of steps, order and company |
+//! | `spans` | the same bits for the shortest, the longest and adapted spans, also of large teams and many signals |
 //! | `failures` | lost devices, shaders that do not compile, too little memory, too large teams |
 //!
 //! Without an adapter these tests print SKIPPED, unless URTS_REQUIRE_GPU=1 asks for one.
@@ -18,6 +19,7 @@ mod failures;
 mod faults;
 mod mutations;
 mod parity;
+mod spans;
 
 use crate::common::{altered, repository};
 use urts_mc::agent::Agent;
@@ -160,6 +162,23 @@ fn mixed_thrust(changes: &[(&str, &str)]) -> Campaign {
     ];
     mixed(&[&thrust, changes].concat())
 }
+
+/// The same with another number of UAVs, all of which have one reference.
+fn team_of(base: &Campaign, team: usize) -> Campaign {
+    let (head, rest) = base.text.split_once("[[reference.agents]]").unwrap();
+    let (_, tail) = rest.split_once("[synthesis]").unwrap();
+    let text = format!("{head}center = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]\n\n[synthesis]{tail}");
+    let text = text.replace("team = 3", &format!("team = {team}"));
+    let campaign = Campaign::parse(&text, &base.path).unwrap();
+    assert_eq!(campaign.team, team);
+    campaign
+}
+
+/// The longest spans that the adapter may take: parity holds with these, however fast the machine is.
+const LONGEST: Tuning = Tuning {
+    batch: None,
+    steps: Some(u32::MAX),
+};
 
 /// Changes of [`mixed`]: 600 steps, so that there are two flushes of the metrics and 150 blocks of noise, and a rest.
 const BRIEF: [(&str, &str); 5] = [

@@ -31,7 +31,7 @@ const SAMPLES: u32 = 64;
 pub struct Tuning {
     /// Episodes per batch, as far as the adapter allows; else as many as fit.
     pub batch: Option<u32>,
-    /// Steps per dispatch; else what takes about 0.1 s.
+    /// Steps per dispatch, as far as the adapter allows; else what takes about 0.1 s.
     pub steps: Option<u32>,
 }
 
@@ -60,6 +60,8 @@ pub struct GpuSimulator<'g> {
     tuning: Tuning,
     /// Steps of the next dispatch.
     steps: u32,
+    /// Steps of a dispatch, at most: what the loops of its shaders and the references on the device allow.
+    most_steps: u32,
     times: GpuTimes,
 }
 
@@ -128,9 +130,11 @@ impl<'g> GpuSimulator<'g> {
         let layout = binding_layout(gpu);
         let start = Instant::now();
         let mut groups: Vec<Pipeline> = Vec::new();
+        let mut most_steps = u32::MAX;
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
                 let shape = shape(gpu, campaign, part, gains.kind == ControllerKind::Ftc)?;
+                most_steps = most_steps.min(shape.most_steps(gpu)?);
                 // The axes mostly share their shaders, and the PIDs do.
                 let known = groups.iter().find(|group| group.shape == shape);
                 let pipelines = match known {
@@ -155,10 +159,11 @@ impl<'g> GpuSimulator<'g> {
         let compile_s = start.elapsed().as_secs_f64();
         let batch = batch(gpu, &groups, campaign.episodes, tuning);
         let buffers = Buffers::largest(gpu, &layout, &groups, &model, batch)?;
-        let most = buffers.window_steps.max(1);
+        let most_steps = most_steps.min(buffers.window_steps).max(1);
         Ok(Self {
             gpu,
-            steps: tuning.steps.unwrap_or(FIRST_STEPS).clamp(1, most),
+            steps: tuning.steps.unwrap_or(FIRST_STEPS).clamp(1, most_steps),
+            most_steps,
             model,
             controllers,
             groups,
@@ -176,6 +181,19 @@ impl<'g> GpuSimulator<'g> {
     #[must_use]
     pub fn batch(&self) -> u32 {
         word(self.buffers.batch)
+    }
+
+    /// Steps of a dispatch, at most.
+    #[must_use]
+    pub fn most_steps(&self) -> u32 {
+        self.most_steps
+    }
+
+    /// Takes so many steps per dispatch, even more than the adapter allows, to test that a test would notice.
+    #[doc(hidden)]
+    pub fn force_steps(&mut self, steps: u32) {
+        self.steps = steps.clamp(1, self.buffers.window_steps);
+        self.tuning.steps = Some(self.steps);
     }
 
     /// Times so far.
@@ -205,18 +223,13 @@ impl<'g> GpuSimulator<'g> {
 
         let start = Instant::now();
         let steps = self.model.campaign.time.steps;
-        let (mut step, mut told) = (0, 0);
-        while step < steps {
-            let until = step.saturating_add(self.steps).min(steps);
-            let began = Instant::now();
-            self.dispatch(episodes.len(), Entry::Advance, step..until, 0)?;
-            self.adapt(until - step, began.elapsed());
-            step = until;
+        let mut told = 0;
+        self.advance(episodes.len(), 0..steps, &mut |step| {
             let share = u64::from(word(episodes.len())) * u64::from(step) / u64::from(steps);
             let share = u32::try_from(share).unwrap_or(u32::MAX);
             done(share - told);
             told = share;
-        }
+        })?;
         self.times.kernel_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
@@ -366,14 +379,33 @@ impl<'g> GpuSimulator<'g> {
         let per_step = took.as_secs_f64() / f64::from(steps);
         let wanted = DISPATCH.as_secs_f64() / per_step;
         // A single measurement may be off: no jumps.
-        let most = f64::from(self.steps.saturating_mul(4).min(self.buffers.window_steps));
+        let most = f64::from(self.steps.saturating_mul(4).min(self.most_steps));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "clamped to the steps of a window"
+            reason = "clamped to the steps of a dispatch"
         )]
         let wanted = wanted.clamp(1.0, most.max(1.0)) as u32;
         self.steps = wanted;
+    }
+
+    /// Integrates over some steps, in as many dispatches as it takes; `reached` is told after each where the state stands.
+    fn advance(
+        &mut self,
+        episodes: usize,
+        steps: Range<u32>,
+        reached: &mut dyn FnMut(u32),
+    ) -> Result<(), GpuError> {
+        let mut first = steps.start;
+        while first < steps.end {
+            let until = first.saturating_add(self.steps).min(steps.end);
+            let began = Instant::now();
+            self.dispatch(episodes, Entry::Advance, first..until, 0)?;
+            self.adapt(until - first, began.elapsed());
+            reached(until);
+            first = until;
+        }
+        Ok(())
     }
 
     /// Dispatches an instant of a trace: what it shows, then the steps to the next one.
@@ -385,15 +417,7 @@ impl<'g> GpuSimulator<'g> {
         sample: u32,
     ) -> Result<(), GpuError> {
         self.dispatch(episodes, Entry::Show, step..step, sample)?;
-        let mut first = step;
-        while first < next {
-            let until = first.saturating_add(self.steps).min(next);
-            let began = Instant::now();
-            self.dispatch(episodes, Entry::Advance, first..until, 0)?;
-            self.adapt(until - first, began.elapsed());
-            first = until;
-        }
-        Ok(())
+        self.advance(episodes, step..next, &mut |_| ())
     }
 
     /// Dispatches an entry point of every group over a span of steps, and waits.

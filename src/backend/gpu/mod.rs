@@ -7,6 +7,7 @@ mod adapter;
 mod batch;
 mod buffers;
 mod device;
+mod iterations;
 pub(crate) mod layout;
 mod pipeline;
 pub(crate) mod shape;

@@ -1,8 +1,8 @@
 //! Bipeds: every episode, controller, agent and joint is compared with the CPU, as those of UAVs are.
 
 use super::agreement::{Expected, TWIN};
-use super::mixed_biped;
 use super::parity::{agreement, followed};
+use super::{LONGEST, mixed_biped};
 use crate::common::{altered, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::Tuning;
@@ -96,7 +96,7 @@ fn val_a_team_of_42_bipeds_agrees_though_its_references_take_turns_on_the_device
     );
     assert!(campaign.time.steps > 831);
     let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
-    let flown = super::fly(&gpu, &campaign, &gains, Tuning::default());
+    let flown = super::fly(&gpu, &campaign, &gains, LONGEST);
     let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&flown);
     let summary = agreed.unwrap();
     println!("{summary}");

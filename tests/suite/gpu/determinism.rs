@@ -21,7 +21,7 @@ fn short(episodes: &str, controllers: &str) -> (Campaign, Gains) {
 }
 
 /// Flights in digits that no other number has, also where they left the numbers.
-fn digits(flown: &[EpisodeResult]) -> Vec<String> {
+pub(super) fn digits(flown: &[EpisodeResult]) -> Vec<String> {
     flown.iter().map(|flown| format!("{flown:?}")).collect()
 }
 
@@ -32,7 +32,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 70);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
-    // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and take all steps at once.
+    // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and are as long as the adapter allows.
     for (batch, steps) in [
         (None, None),
         (Some(64), Some(600)),

@@ -2,9 +2,8 @@
 
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
-use super::{fly, jets, linked, replaced};
+use super::{LONGEST, fly, jets, linked, replaced};
 use crate::common::{altered, gpu_or_skip};
-use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
 use urts_mc::controllers::GainSet;
 
@@ -79,7 +78,7 @@ fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands
     // The contract alone: some of these flights are shaken so much that rounding grows beyond what calm ones show.
     let Some(gpu) = gpu_or_skip() else { return };
     let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
-    let flown = fly(&gpu, &campaign, &gains, Tuning::default());
+    let flown = fly(&gpu, &campaign, &gains, LONGEST);
     let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&flown);
     let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));
     println!("{}: {summary}", campaign.name);

@@ -2,7 +2,7 @@
 //! in double precision within the contract and in single precision within rounding.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN, failed, figures, saturated};
-use super::{Gains, fly, mixed, mixed_thrust};
+use super::{Gains, LONGEST, fly, mixed, mixed_thrust, team_of};
 use crate::common::altered;
 use crate::common::gpu_or_skip;
 use urts_mc::backend::cpu::{Cpu, Precision};
@@ -15,7 +15,7 @@ use urts_mc::model::ChannelSample;
 pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
     let gpu = gpu_or_skip()?;
     let gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
-    let flown = fly(&gpu, campaign, &gains, Tuning::default());
+    let flown = fly(&gpu, campaign, &gains, LONGEST);
     for (k, one) in flown.iter().enumerate() {
         let mut before = flown[..k].iter();
         assert!(before.all(|other| other.episode.agents != one.episode.agents));
@@ -142,26 +142,17 @@ fn val_everything_at_once_under_thrust_agrees() {
 #[test]
 fn val_a_team_of_64_agrees_though_its_references_take_turns_on_the_device() {
     // One row per half step: 64 agents x 6 channels x 16 bytes, so 32 MiB hold the references of 2730 steps.
-    let blocks = |text: &str| {
-        let (head, rest) = text.split_once("[[reference.agents]]").unwrap();
-        let (_, tail) = rest.split_once("[synthesis]").unwrap();
-        format!("{head}center = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]\n\n[synthesis]{tail}")
-    };
-    let base = altered("uav-physical", &[]);
-    let text = blocks(&base.text)
-        .replace("episodes = 1024", "episodes = 2")
-        .replace("team = 3", "team = 64")
-        .replace("choice = [0.0, 0.05]", "choice = [0.0, 0.001]")
-        .replace("std = 0.1", "std = 0.05")
-        .replace("max_torque_n_m = 60.0", "max_torque_n_m = 600.0")
-        .replace("max_thrust_n = 80.0", "max_thrust_n = 200.0")
-        .replace("duration_s = 20.0", "duration_s = 11.0")
-        .replace(
-            "controllers = [\"ftc\", \"pid\", \"pid-tuned\"]",
-            "controllers = [\"pid\"]",
-        );
-    let campaign = Campaign::parse(&text, &base.path).unwrap();
-    assert!(campaign.team == 64 && campaign.time.steps > 2 * 2730);
+    let changes = [
+        ("episodes = 1024", "episodes = 2"),
+        ("choice = [0.0, 0.05]", "choice = [0.0, 0.001]"),
+        ("std = 0.1", "std = 0.05"),
+        ("max_torque_n_m = 60.0", "max_torque_n_m = 600.0"),
+        ("max_thrust_n = 80.0", "max_thrust_n = 200.0"),
+        ("duration_s = 20.0", "duration_s = 11.0"),
+        ("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\""),
+    ];
+    let campaign = team_of(&altered("uav-physical", &changes), 64);
+    assert!(campaign.time.steps > 2 * 2730);
     let Some([_, single]) = agreement(&campaign) else {
         return;
     };
