@@ -4,12 +4,13 @@
 pub mod quantities;
 
 use crate::campaign::{
-    Campaign, FaultChannels, RandomQuantity, Sampling, SamplingScope, Stratum, StratumFaults, Time,
+    Campaign, FaultChannels, Parameter, RandomQuantity, Sampling, SamplingScope, Stratum,
+    StratumFaults, Time,
 };
 use crate::random::philox::{Address, Stream};
 use crate::random::{MOST_ENTRIES, latin_hypercube, sobol};
 
-/// Everything random about an episode, as it is applied.
+/// Everything random about an episode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Episode {
     /// Index of the episode.
@@ -54,6 +55,70 @@ pub struct FaultDraw {
     pub ramp_s: f64,
     /// Its parameters: `[parameter][channel]`.
     pub parameters: Vec<Vec<f64>>,
+}
+
+impl Episode {
+    /// The same with each agent's times as they happen.
+    #[must_use]
+    pub fn applied(&self, campaign: &Campaign) -> Self {
+        Self {
+            index: self.index,
+            agents: self
+                .agents
+                .iter()
+                .map(|draw| draw.applied(campaign))
+                .collect(),
+        }
+    }
+}
+
+impl AgentDraw {
+    /// The same with its times as they happen, in whole steps, which is how tables and rankings show them: an onset is the time
+    /// of the step with which something begins, a length is so many steps.
+    #[must_use]
+    pub fn applied(&self, campaign: &Campaign) -> Self {
+        let time = campaign.time;
+        let in_steps = |parameters: &'static [Parameter], values: &[Vec<f64>]| {
+            let pairs = parameters.iter().zip(values);
+            pairs
+                .map(|(parameter, values)| {
+                    let applied = |&value: &f64| applied(time, parameter, value);
+                    values.iter().map(applied).collect()
+                })
+                .collect()
+        };
+        let disturbances = campaign.disturbances.iter().zip(&self.disturbances);
+        let faults = campaign.faults.iter().zip(&self.faults);
+        Self {
+            control_delay_s: match &campaign.control.delay_s {
+                Some(_) => time.whole_steps(self.control_delay_s) * time.step_s,
+                None => 0.0,
+            },
+            disturbances: disturbances
+                .map(|(disturbance, values)| in_steps(disturbance.kind.parameters(), values))
+                .collect(),
+            faults: faults
+                .map(|(fault, draw)| FaultDraw {
+                    strikes: draw.strikes.clone(),
+                    onset_s: f64::from(time.onset_step(draw.onset_s)) * time.step_s,
+                    duration_s: time.whole_steps(draw.duration_s) * time.step_s,
+                    // Of less than half a step it is none: all is there at once.
+                    ramp_s: (draw.ramp_s / time.step_s).round() * time.step_s,
+                    parameters: in_steps(fault.kind.parameters(), &draw.parameters),
+                })
+                .collect(),
+            ..self.clone()
+        }
+    }
+}
+
+/// A parameter's value as it acts: times in whole steps, all else as it was drawn.
+fn applied(time: Time, parameter: &Parameter, value: f64) -> f64 {
+    match parameter.name {
+        "onset_s" => f64::from(time.onset_step(value)) * time.step_s,
+        "delay_s" | "burst_s" | "window_s" | "duration_s" => time.whole_steps(value) * time.step_s,
+        _ => value,
+    }
 }
 
 impl FaultDraw {

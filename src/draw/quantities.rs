@@ -1,11 +1,13 @@
 //! What an episode met, one number per quantity of the campaign: what the ranking relates to the outcomes.
 //!
 //! The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean square
-//! over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
+//! over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean. Times are those at
+//! which things happen, in whole steps, as in the tables.
 
 use super::{AgentDraw, Episode, FaultDraw};
 use crate::agent::Agent;
 use crate::campaign::Campaign;
+use crate::statistics::root_mean_square;
 
 /// A quantity and its size in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
 pub type DrawnQuantity = (String, Option<f64>);
@@ -13,10 +15,10 @@ pub type DrawnQuantity = (String, Option<f64>);
 /// The conditions of an episode, the same quantities in the same order for all episodes of a campaign.
 #[must_use]
 pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> {
-    let agents = &episode.agents;
-    let of_agents = |pick: &dyn Fn(&AgentDraw) -> f64| size(agents.iter().map(pick));
+    let agents = &episode.applied(campaign).agents;
+    let of_agents = |pick: &dyn Fn(&AgentDraw) -> f64| root_mean_square(agents.iter().map(pick));
     let of_channels = |pick: &dyn Fn(&AgentDraw) -> &Vec<f64>| {
-        size(agents.iter().flat_map(|draw| pick(draw).iter().copied()))
+        root_mean_square(agents.iter().flat_map(|draw| pick(draw).iter().copied()))
     };
     let mut all = vec![("mass_scale".to_string(), of_agents(&|draw| draw.mass_scale))];
     if let Agent::Uav(_) = campaign.agent {
@@ -42,7 +44,7 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> 
             });
             all.push((
                 format!("disturbance{index}_{}", parameter.name),
-                size(values),
+                root_mean_square(values),
             ));
         }
     }
@@ -55,7 +57,7 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> 
         all.push((format!("fault{index}_onset_s"), first));
         let mut of_time = |name: &str, pick: fn(&FaultDraw) -> f64| {
             let lengths = struck().filter(|fault| fault.occurs()).map(pick);
-            all.push((format!("fault{index}_{name}"), size(lengths)));
+            all.push((format!("fault{index}_{name}"), root_mean_square(lengths)));
         };
         if fault.duration_s.is_some() {
             of_time("duration_s", |fault| fault.duration_s);
@@ -70,7 +72,8 @@ pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> 
                     .filter(|(_, strikes)| **strikes)
                     .map(|(value, _)| *value)
             });
-            all.push((format!("fault{index}_{}", parameter.name), size(values)));
+            let name = format!("fault{index}_{}", parameter.name);
+            all.push((name, root_mean_square(values)));
         }
     }
     all
@@ -106,12 +109,4 @@ fn of_disturbance(campaign: &Campaign, condition: &str) -> Option<String> {
         _ => format!(" [{index}]"),
     };
     Some(format!("{}{place} {rest}", kind.name()))
-}
-
-/// Root mean square; none of nothing.
-fn size(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| {
-        (sum + value * value, count + 1.0)
-    });
-    (count > 0.0).then(|| (sum / count).sqrt())
 }

@@ -2,7 +2,7 @@
 
 use crate::agent::{Agent, ChannelGroup};
 use crate::backend::EpisodeResult;
-use crate::campaign::{Campaign, Parameter, Time};
+use crate::campaign::{Campaign, Time};
 use crate::draw::AgentDraw;
 use crate::draw::quantities::{DrawnQuantity, conditions};
 use crate::model::episode::AgentOutcome;
@@ -222,7 +222,8 @@ impl Tables {
 
     /// Adds an episode; episodes are added in order.
     pub fn add(&mut self, campaign: &Campaign, flown: &EpisodeResult) {
-        let draws = &flown.episode.agents;
+        // All rows show the times as they happen.
+        let draws = &flown.episode.applied(campaign).agents;
         for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
             occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
         }
@@ -413,8 +414,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     }
     row.real(|| "kappa".into(), draw.kappa);
     if campaign.control.delay_s.is_some() {
-        let steps = campaign.time.whole_steps(draw.control_delay_s);
-        row.real(|| "control_delay_s".into(), steps * campaign.time.step_s);
+        row.real(|| "control_delay_s".into(), draw.control_delay_s);
     }
     let initial = [
         ("error", &draw.error),
@@ -434,7 +434,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
     {
         for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
             let acts = |channel: usize| disturbance.kind.acts_on(channel);
-            let applied = where_it(&as_flown(campaign.time, parameter, values), acts);
+            let applied = where_it(values, acts);
             write_channels(row, campaign, &applied, |channel| {
                 format!("disturbance{index}_{}_{channel}", parameter.name)
             });
@@ -450,37 +450,24 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
                 struck.unwrap_or_default(),
             );
         }
-        let (time, occurs) = (campaign.time, drawn.occurs());
-        let mut of_time = |name: &str, steps: f64| {
-            let length_s = occurs.then_some(steps * time.step_s);
-            let length_s = length_s.unwrap_or(f64::NAN);
-            row.real(|| format!("fault{index}_{name}"), length_s);
+        let mut of_time = |name: &str, time_s: f64| {
+            let time_s = drawn.occurs().then_some(time_s).unwrap_or(f64::NAN);
+            row.real(|| format!("fault{index}_{name}"), time_s);
         };
-        of_time("onset_s", f64::from(time.onset_step(drawn.onset_s)));
+        of_time("onset_s", drawn.onset_s);
         if fault.duration_s.is_some() {
-            of_time("duration_s", time.whole_steps(drawn.duration_s));
+            of_time("duration_s", drawn.duration_s);
         }
         if fault.ramp_s.is_some() {
-            of_time("ramp_s", (drawn.ramp_s / time.step_s).round());
+            of_time("ramp_s", drawn.ramp_s);
         }
         for (parameter, values) in fault.kind.parameters().iter().zip(&drawn.parameters) {
-            let flown = as_flown(campaign.time, parameter, values);
-            let applied = where_it(&flown, |channel| drawn.strikes[channel]);
+            let applied = where_it(values, |channel| drawn.strikes[channel]);
             write_channels(row, campaign, &applied, |channel| {
                 format!("fault{index}_{}_{channel}", parameter.name)
             });
         }
     }
-}
-
-/// Lengths of time as they are flown, in whole steps; all else as it was drawn.
-fn as_flown(time: Time, parameter: &Parameter, values: &[f64]) -> Vec<f64> {
-    let flown = |value: &f64| match parameter.name {
-        "onset_s" => f64::from(time.onset_step(*value)) * time.step_s,
-        "delay_s" | "burst_s" | "window_s" | "duration_s" => time.whole_steps(*value) * time.step_s,
-        _ => *value,
-    };
-    values.iter().map(flown).collect()
 }
 
 /// The values of the channels on which something acts; not a number elsewhere.

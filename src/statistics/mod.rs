@@ -19,6 +19,7 @@
 //! | may a run stop as soon as it is proved? | [`sequential_proof`], [`sequential_interval`] | confidence sequence |
 //! | which parameter matters? | [`effects`], [`spearman`], [`somers_d`] | ranks, permutations |
 //! | which of many effects are real? | [`holm`] | Holm's step-down |
+//! | how large are numbers of either sign? | [`root_mean_square()`] | exact for equal sizes |
 //! | what do replicates of a design say? | [`replicate_mean`], [`replicate_p`] | Student's t |
 //!
 //! Counts beyond their total are read as the total. A `level` is a two-sided confidence level in
@@ -38,6 +39,7 @@ mod proportion;
 mod quantile;
 mod rank;
 mod replicates;
+mod root_mean_square;
 mod sample_size;
 mod sequential;
 mod student;
@@ -52,6 +54,7 @@ pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval};
 pub use rank::Ranked;
 pub use replicates::{replicate_mean, replicate_p};
+pub use root_mean_square::root_mean_square;
 pub use sample_size::{failures_allowed, power, runs_needed};
 pub use sequential::{
     Proof, sequential_interval, sequential_lower, sequential_proof, sequential_runs_needed,

@@ -1,10 +1,14 @@
 //! Which condition breaks it, and the worst episodes.
 
-use crate::common::{campaign, tables};
+use crate::common::{altered, campaign, tables};
+use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
+use urts_mc::draw::draw;
+use urts_mc::model::episode::AgentOutcome;
+use urts_mc::model::metric::ChannelOutcome;
 use urts_mc::results::sensitivity::{SensitivityResult, rank, worst};
-use urts_mc::results::tables::{Scores, Status};
+use urts_mc::results::tables::{Scores, Status, Tables};
 
 /// A campaign whose controllers have reasons to fail, and its scores.
 fn flown(name: &str, episodes: u32) -> (Campaign, Scores) {
@@ -152,4 +156,130 @@ fn the_worst_episodes_are_those_that_failed_then_those_nearest_to_it() {
     // The plain PID fails here, the FTC does not.
     assert_eq!(worst[0].status, Status::Ok);
     assert_eq!(worst[10].status, Status::Exceeded);
+}
+
+/// The tables of a campaign's first episodes as if they had been flown without an error: what was drawn is all there.
+fn drawn_tables(campaign: &Campaign, episodes: u32) -> Tables {
+    let agent = AgentOutcome {
+        failed_step: None,
+        diverged: false,
+        channels: vec![ChannelOutcome::default(); campaign.channels().len()],
+    };
+    let mut tables = Tables::new(campaign);
+    for episode in 0..episodes {
+        let flown = EpisodeResult {
+            episode: draw(campaign, episode),
+            outcomes: vec![vec![agent.clone(); campaign.team]; campaign.controllers.len()],
+        };
+        tables.add(campaign, &flown);
+    }
+    tables
+}
+
+/// Root mean square in another way than the program's.
+fn size(values: &[f64]) -> Option<f64> {
+    let largest = values.iter().copied().map(f64::abs).reduce(f64::max)?;
+    let shares = values.iter().map(|value| (value / largest).powi(2));
+    let mean = shares.sum::<f64>() / values.len() as f64;
+    Some(if largest > 0.0 {
+        largest * mean.sqrt()
+    } else {
+        0.0
+    })
+}
+
+#[test]
+fn what_is_ranked_is_what_the_tables_show() {
+    let mut moved = 0;
+    for name in ["uav-faults", "uav-digital", "uav-attack", "biped-faults"] {
+        let (campaign, episodes) = (campaign(name), 40);
+        let tables = drawn_tables(&campaign, episodes);
+        let frame = tables.episodes.to_frame().unwrap();
+        let stride = campaign.controllers.len() * campaign.team;
+        // The cells of a quantity in an episode, of all agents and channels, where it applies.
+        let cells = |quantity: &str, episode: usize| -> Vec<f64> {
+            let of_channel = |channel: &_| frame.column(&format!("{quantity}_{channel}"));
+            let columns = campaign.channels().iter().map(of_channel);
+            let columns = columns.chain([frame.column(quantity)]).flatten();
+            let rows = columns.flat_map(|column| {
+                let numbers = column.cast(&polars::prelude::DataType::Float64).unwrap();
+                let first = episode * stride;
+                let rows = first..first + campaign.team;
+                rows.filter_map(|row| numbers.f64().unwrap().get(row))
+                    .collect::<Vec<_>>()
+            });
+            rows.collect()
+        };
+        for (condition, values) in &tables.scores.conditions {
+            for (episode, &ranked) in values.iter().enumerate() {
+                let at = format!("{name}, episode {episode}: {condition}");
+                if let Some(fault) = condition.strip_suffix("_agents") {
+                    let struck = cells(&format!("{fault}_occurs"), episode);
+                    assert_eq!(ranked, Some(struck.iter().sum()), "{at}");
+                    continue;
+                }
+                let shown = cells(condition, episode);
+                if condition.starts_with("fault") && condition.ends_with("_onset_s") {
+                    assert_eq!(ranked, shown.iter().copied().reduce(f64::min), "{at}");
+                    continue;
+                }
+                match (ranked, size(&shown)) {
+                    // The order of a dozen roundings.
+                    (Some(ranked), Some(size)) => {
+                        assert!((ranked - size).abs() <= 1e-14 * size, "{at}: {ranked}");
+                    }
+                    (ranked, size) => assert_eq!(ranked, size, "{at}"),
+                }
+            }
+        }
+        // Negative control: times as they were drawn are others than those that are ranked.
+        for (index, _) in campaign.faults.iter().enumerate() {
+            let onset = format!("fault{index}_onset_s");
+            let ranked = tables.scores.conditions.iter();
+            let (_, ranked) = ranked.clone().find(|(name, _)| *name == onset).unwrap();
+            for (episode, &ranked) in (0..).zip(ranked) {
+                let agents = draw(&campaign, episode).agents;
+                let faults = agents.iter().map(|agent| &agent.faults[index]);
+                let onsets = faults
+                    .filter(|fault| fault.occurs())
+                    .map(|fault| fault.onset_s);
+                moved += u32::from(onsets.reduce(f64::min) != ranked);
+            }
+        }
+    }
+    assert!(moved > 100, "{moved}");
+}
+
+#[test]
+fn a_constant_is_no_condition_however_many_it_strikes() {
+    let struck = [
+        ("channels = \"one\"", "channels = \"all\""),
+        ("magnitude = { uniform = [0.1, 0.5] }", "magnitude = 0.1"),
+        ("onset_s = { uniform = [2.5, 4.0] }", "onset_s = 2.7001"),
+    ];
+    let campaign = altered("smoke", &struck);
+    let scores = tables(&campaign, Precision::F32).scores;
+    let of = |name: &str| {
+        let mut all = scores.conditions.iter();
+        let (_, values) = all.find(|(own, _)| own == name).unwrap();
+        values.iter().copied().flatten().collect::<Vec<f64>>()
+    };
+    // One agent of the team has the fault in some episodes, two in others: 6 and 12 values.
+    let agents = of("fault0_agents");
+    assert!(agents.contains(&1.0) && agents.contains(&2.0), "{agents:?}");
+    let magnitudes = of("fault0_magnitude");
+    assert!(magnitudes.len() > 9 && magnitudes.iter().all(|&magnitude| magnitude == 0.1));
+    // An onset between two steps is the later one's in all episodes.
+    let onset_s = f64::from(campaign.time.onset_step(2.7001)) * campaign.time.step_s;
+    assert!(onset_s > 2.7001 && of("fault0_onset_s").iter().all(|&onset| onset == onset_s));
+    let ranked = |name: &str| {
+        rank(&campaign, &scores)
+            .iter()
+            .any(|own| own.condition == name)
+    };
+    assert!(!ranked("fault0_magnitude") && !ranked("fault0_onset_s"));
+    assert!(ranked("fault0_agents"));
+    // Negative control: the mean of 12 squares alone is another number.
+    let squares: f64 = [0.1_f64; 12].iter().map(|own| own * own).sum();
+    assert_ne!((squares / 12.0).sqrt(), 0.1);
 }

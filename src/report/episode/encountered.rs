@@ -4,6 +4,7 @@ use super::episode_data::EpisodeView;
 use crate::campaign::Link;
 use crate::draw::AgentDraw;
 use crate::report::page::document::{Block, Cell, Grid, Section};
+use crate::statistics::root_mean_square;
 use crate::util::format::number;
 use std::sync::Arc;
 
@@ -186,6 +187,5 @@ fn valued(name: &str, values: &[(&Arc<str>, f64)]) -> String {
 
 /// Root mean square.
 fn size(values: &[f64]) -> f64 {
-    let sum: f64 = values.iter().map(|value| value * value).sum();
-    (sum / values.len() as f64).sqrt()
+    root_mean_square(values.iter().copied()).unwrap_or(f64::NAN)
 }

@@ -33,7 +33,7 @@ impl ControllerTrace<'_> {
 pub(super) struct EpisodeView<'a> {
     pub(super) replay: &'a Replay,
     pub(super) campaign: &'a Campaign,
-    /// What it drew.
+    /// What it drew, with times as they happen.
     pub(super) episode: Episode,
     /// The flights, that of the controller that was asked for first.
     pub(super) flights: Vec<ControllerTrace<'a>>,
@@ -57,7 +57,7 @@ impl<'a> EpisodeView<'a> {
         Self {
             replay,
             campaign,
-            episode: draw(campaign, replay.episode),
+            episode: draw(campaign, replay.episode).applied(campaign),
             flights: std::iter::once(asked).chain(others).collect(),
             duration_s: f64::from(campaign.time.steps) * campaign.time.step_s,
         }

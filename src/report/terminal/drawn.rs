@@ -126,7 +126,8 @@ fn subjects(campaign: &Campaign) -> Vec<Subject> {
     let mut faults: Vec<Subject> = names.enumerate().map(of_fault).collect();
 
     let episodes = 0..DRAWS.min(campaign.episodes);
-    for draws in episodes.flat_map(|episode| draw(campaign, episode).agents) {
+    let applied = |episode| draw(campaign, episode).applied(campaign);
+    for draws in episodes.flat_map(|episode| applied(episode).agents) {
         agents.add("mass_scale", [draws.mass_scale]);
         if let Agent::Uav(_) = campaign.agent {
             agents.add("inertia_scale", [draws.inertia_scale]);
