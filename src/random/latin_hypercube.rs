@@ -1,8 +1,8 @@
 //! Latin hypercubes.
 
-use super::Purpose;
 use super::permutation::{bits_of, permuted};
 use super::philox::{Address, Stream};
+use super::purpose::Purpose;
 
 /// The number in (0, 1) of a `dimension` in an `episode` of a Latin hypercube of `n` episodes
 /// (McKay, Beckman and Conover 1979, Technometrics 21:239-245).

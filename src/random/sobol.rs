@@ -1,7 +1,7 @@
 //! Scrambled Sobol points.
 
-use super::Purpose;
 use super::philox::{Address, Stream};
+use super::purpose::Purpose;
 
 /// Dimensions that share a net; further groups are padded with independently shuffled ones.
 const GROUP: u32 = 4;
