@@ -1,7 +1,8 @@
 //! Rank correlations, with intervals that assume no distribution.
 
+use super::interval::{Estimate, Interval, is_level};
+use super::rank::Ranked;
 use super::student::t_quantile;
-use super::{Estimate, Interval, Ranked, is_level};
 
 /// Fewer rows leave the interval of a rank correlation at [-1, 1].
 const FEWEST_ROWS: usize = 20;

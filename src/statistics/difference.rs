@@ -1,6 +1,6 @@
 //! Comparison of two independent samples.
 
-use super::{Estimate, Interval};
+use super::interval::{Estimate, Interval};
 
 /// `a` minus `b`, of quantities estimated from independent samples, by the recovery of variances from their intervals (MOVER;
 /// Zou and Donner 2008, Statistics in Medicine 27:1693-1702): of the two intervals' level. Each end is as far from the

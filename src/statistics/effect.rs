@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::{Estimate, Ranked, correlation};
+use super::correlation;
+use super::interval::Estimate;
+use super::rank::Ranked;
 use crate::random::philox::{Address, Stream};
 
 /// What the parameters may have an effect on.

@@ -2,7 +2,10 @@
 
 use statrs::function::erf::{erfc, erfc_inv};
 
-use super::{Estimate, Interval, binomial, first_rank, is_level, two_sided_z};
+use super::binomial;
+use super::interval::{Estimate, Interval, is_level};
+use super::normal::two_sided_z;
+use super::search::first_rank;
 
 /// Median with its bias-corrected and accelerated (BCa) bootstrap interval (Efron 1987, JASA
 /// 82:171-185) over the ideal bootstrap, computed exactly instead of by resampling.

@@ -33,7 +33,9 @@ mod correlation;
 mod difference;
 mod effect;
 mod holm;
+mod interval;
 mod median;
+mod normal;
 mod paired;
 mod proportion;
 mod quantile;
@@ -41,6 +43,7 @@ mod rank;
 mod replicates;
 mod root_mean_square;
 mod sample_size;
+mod search;
 mod sequential;
 mod student;
 
@@ -48,6 +51,7 @@ pub use correlation::{somers_d, spearman};
 pub use difference::independent_difference;
 pub use effect::{Effect, Outcome, Permutations, effects};
 pub use holm::holm;
+pub use interval::{Estimate, Interval, LEVEL};
 pub use median::median_bca;
 pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
@@ -60,62 +64,3 @@ pub use sequential::{
     Proof, sequential_interval, sequential_lower, sequential_proof, sequential_runs_needed,
     sequential_upper,
 };
-
-/// Level of every two-sided interval, and of the one-sided failure bound.
-pub const LEVEL: f64 = 0.95;
-
-/// A confidence interval; both ends belong to it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Lower limit; `-inf` where the data set none.
-    pub lower: f64,
-    /// Upper limit; `+inf` where the data set none.
-    pub upper: f64,
-}
-
-/// A point estimate with its confidence interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// Point estimate.
-    pub value: f64,
-    /// Confidence interval of the estimated quantity.
-    pub interval: Interval,
-}
-
-fn is_level(level: f64) -> bool {
-    0.0 < level && level < 1.0
-}
-
-/// The z with P(|Z| <= z) = `level` for a standard normal Z.
-fn two_sided_z(level: f64) -> f64 {
-    std::f64::consts::SQRT_2 * statrs::function::erf::erfc_inv(1.0 - level)
-}
-
-/// The smallest rank in `1..=n` for which `holds`; `holds` must stay true once it is.
-fn first_rank(n: usize, holds: impl Fn(usize) -> bool) -> Option<usize> {
-    let (mut first, mut end) = (1, n + 1);
-    while first < end {
-        let middle = usize::midpoint(first, end);
-        if holds(middle) {
-            end = middle;
-        } else {
-            first = middle + 1;
-        }
-    }
-    (first <= n).then_some(first)
-}
-
-/// The point of [`lower`, `upper`] where `is_below` changes from true to false, to the last bit.
-fn bisect(mut lower: f64, mut upper: f64, is_below: impl Fn(f64) -> bool) -> f64 {
-    loop {
-        let middle = f64::midpoint(lower, upper);
-        if middle <= lower || upper <= middle {
-            return upper;
-        }
-        if is_below(middle) {
-            lower = middle;
-        } else {
-            upper = middle;
-        }
-    }
-}

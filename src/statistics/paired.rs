@@ -1,6 +1,9 @@
 //! Comparison of two controllers on the same episodes.
 
-use super::{Estimate, Interval, binomial, bisect, is_level, two_sided_z};
+use super::binomial;
+use super::interval::{Estimate, Interval, is_level};
+use super::normal::two_sided_z;
+use super::search::bisect;
 
 /// Episodes by the outcome of controllers A and B, each run once on every episode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

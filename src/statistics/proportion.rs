@@ -1,6 +1,9 @@
 //! Intervals of one failure rate.
 
-use super::{Interval, binomial, bisect, is_level, two_sided_z};
+use super::binomial;
+use super::interval::{Interval, is_level};
+use super::normal::two_sided_z;
+use super::search::bisect;
 
 const UNKNOWN: Interval = Interval {
     lower: 0.0,

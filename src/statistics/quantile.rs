@@ -1,6 +1,8 @@
 //! Quantiles of a metric as order statistics.
 
-use super::{Interval, binomial, first_rank, is_level};
+use super::binomial;
+use super::interval::{Interval, is_level};
+use super::search::first_rank;
 
 /// The `q`-quantile of ascending values: the smallest value with at least the share `q` of all
 /// values at or below it (type 1 of Hyndman and Fan 1996; `inverted_cdf` in NumPy).

@@ -1,7 +1,7 @@
 //! What independent replicates of a design say together.
 
+use super::interval::{Estimate, Interval};
 use super::student::{t_quantile, two_sided_tail};
-use super::{Estimate, Interval};
 
 /// Mean of the estimates of independent replicates, with Student's t interval over the replicates.
 ///

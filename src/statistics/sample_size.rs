@@ -4,7 +4,8 @@
 //! bound ([`clopper_pearson_upper`](super::clopper_pearson_upper)) is at most p. That is so when p,
 //! were it the true rate, would let as few failures happen with probability at most 1 - confidence.
 
-use super::{binomial, is_level};
+use super::binomial;
+use super::interval::is_level;
 
 /// Counts are exact in double precision up to here.
 const MOST_RUNS: u64 = 1 << 53;

@@ -24,8 +24,10 @@
 //! without a failure it proves 1 % at 95 % after 449 episodes (a fixed number: 299), whereas a
 //! mixture over all of [0, 1] needs 984.
 
+use super::binomial;
+use super::interval::{Interval, is_level};
 use super::sample_size::fewest_runs;
-use super::{Interval, binomial, bisect, is_level};
+use super::search::bisect;
 
 /// What a look at a running campaign has proved about its failure rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,8 @@
 use statrs::function::beta::ln_beta;
 
 use super::binomial::beta_fraction;
-use super::{bisect, is_level};
+use super::interval::is_level;
+use super::search::bisect;
 
 /// The t with P(|T| <= t) = `level` for Student's T with `freedom` > 0 degrees of freedom.
 ///

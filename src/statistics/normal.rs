@@ -1,0 +1,6 @@
+//! The standard normal distribution.
+
+/// The z with P(|Z| <= z) = `level` for a standard normal Z.
+pub(super) fn two_sided_z(level: f64) -> f64 {
+    std::f64::consts::SQRT_2 * statrs::function::erf::erfc_inv(1.0 - level)
+}
