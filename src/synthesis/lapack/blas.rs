@@ -4,7 +4,9 @@
 
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector, RealField};
 
-use super::{Outcome, is_lower, is_transposed, leading, lower_triangle, size, view, view_mut};
+use super::arguments::{
+    Outcome, is_lower, is_transposed, leading, lower_triangle, size, view, view_mut,
+};
 
 pub(super) unsafe fn gemm<T: RealField + Copy>(
     transa: u8,

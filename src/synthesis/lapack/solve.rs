@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DMatrixViewMut, RealField};
 
-use super::{Outcome, is_lower, leading, lower_triangle, size, view, view_mut};
+use super::arguments::{Outcome, is_lower, leading, lower_triangle, size, view, view_mut};
 
 pub(super) unsafe fn potrf<T: RealField + Copy>(uplo: u8, n: i32, a: *mut T, lda: i32) -> Outcome {
     let lower = is_lower(uplo).ok_or(-1)?;

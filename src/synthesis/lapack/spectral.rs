@@ -4,8 +4,8 @@
 
 use nalgebra::{DMatrix, RealField, SymmetricEigen};
 
+use super::arguments::{Outcome, is_lower, leading, lower_triangle, size, view, view_mut};
 use super::jacobi::{Svd, complete_basis, svd};
-use super::{Outcome, is_lower, leading, lower_triangle, size, view, view_mut};
 
 pub(super) unsafe fn syevr<T: RealField + Copy>(
     jobz: u8,
