@@ -1,6 +1,7 @@
 //! The limits of a robot's numbers, the same for every format.
 
-use super::{Body, Foot, JOINTS, Joint, Leg, RobotError};
+use super::error::RobotError;
+use super::structure::{Body, Foot, JOINTS, Joint, Leg};
 use nalgebra::{Cholesky, Isometry3, Matrix3, Rotation3, Unit, Vector3};
 use std::collections::HashSet;
 use std::fmt::{Debug, Display};

@@ -5,7 +5,7 @@
 //! body's motion taken at the origin of its link. The rotor of each joint adds its armature to the diagonal of M.
 
 use super::kinematics::{LegPose, leg_pose};
-use super::{LEG_JOINTS, Leg};
+use super::structure::{LEG_JOINTS, Leg};
 use nalgebra::{Cholesky, Matrix6, Vector3, Vector6};
 
 /// Mass matrix M(q) with the armature on its diagonal, kg m^2; symmetric and positive definite.

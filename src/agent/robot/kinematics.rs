@@ -1,6 +1,6 @@
 //! Where the links of a leg are, in the pelvis frame.
 
-use super::{Body, JOINTS, LEG_JOINTS, Leg, Robot};
+use super::structure::{Body, JOINTS, LEG_JOINTS, Leg, Robot};
 use nalgebra::{Isometry3, Matrix3, Matrix6, Rotation3, Vector3, Vector6};
 
 /// A leg at some joint angles. Everything is in the pelvis frame, link i being the one that joint i moves.

@@ -1,7 +1,8 @@
 //! The joint table: a robot as a TOML file of plain numbers, one `[[joint]]` per joint and its link (campaigns/robots/*.toml).
 
 use super::check::{Check, Names, Place, RawJoint, tensor};
-use super::{Body, Foot, JOINTS, Joint, LEG_JOINTS, Leg, Robot, RobotError};
+use super::error::RobotError;
+use super::structure::{Body, Foot, JOINTS, Joint, LEG_JOINTS, Leg, Robot};
 use crate::util::fixed_list::List;
 use nalgebra::Vector3;
 use serde::Deserialize;

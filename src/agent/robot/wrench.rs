@@ -6,7 +6,7 @@
 
 use super::dynamics::{BaseMotion, carried, newton_euler};
 use super::kinematics::{by_leg, joined, leg_pose};
-use super::{JOINTS, Robot};
+use super::structure::{JOINTS, Robot};
 use nalgebra::{Rotation3, Vector3, Vector6};
 
 /// Motion of an upright pelvis. Its velocity is not asked for: no force depends on it.

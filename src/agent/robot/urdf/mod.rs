@@ -5,8 +5,9 @@ mod syntax;
 mod tree;
 
 use super::check::{Check, Names, Place, RawJoint};
-use super::kinematics::leg_pose;
-use super::{Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot, RobotError, error};
+use super::error::{self, RobotError};
+use super::kinematics::{by_leg, leg_pose};
+use super::structure::{Body, Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot};
 use nalgebra::{Isometry3, Vector3, Vector6};
 use std::path::Path;
 use tree::{Moving, Tree};
@@ -229,7 +230,7 @@ fn joint(
     tree: &Tree<'_>,
     moving: &Moving<'_>,
     armature: f64,
-    body: super::Body,
+    body: Body,
 ) -> Result<Joint, RobotError> {
     let urdf = moving.joint;
     let place = Place {
@@ -287,7 +288,7 @@ fn at_rest(legs: &[Leg; 2]) -> [f64; JOINTS] {
 
 /// Height of the pelvis above the lower sole, m.
 fn height_m(legs: &[Leg; 2], q_rad: &[f64; JOINTS]) -> f64 {
-    let q = super::kinematics::by_leg(q_rad);
+    let q = by_leg(q_rad);
     [LEFT, RIGHT]
         .map(|i| -leg_pose(&legs[i], &q[i]).sole().translation.z)
         .into_iter()

@@ -1,6 +1,6 @@
 //! XML to links and joints, and where in the file an error is.
 
-use crate::agent::robot::RobotError;
+use crate::agent::robot::error::RobotError;
 use std::path::Path;
 use urdf_rs::Robot;
 

@@ -1,7 +1,8 @@
 //! The tree of links and joints of a URDF, and what of it is rigid.
 
 use crate::agent::robot::check::{Check, Place, tensor};
-use crate::agent::robot::{Body, RobotError};
+use crate::agent::robot::error::RobotError;
+use crate::agent::robot::structure::Body;
 use nalgebra::Isometry3;
 use std::collections::HashMap;
 use urdf_rs::{Joint, JointType, Link, Robot};

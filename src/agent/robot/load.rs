@@ -1,0 +1,74 @@
+//! Robots from their files.
+
+use super::error::{self, RobotError};
+use super::structure::Robot;
+use super::urdf::UrdfOptions;
+use super::{table, urdf};
+use std::path::Path;
+
+/// Where the shipped G1 is.
+pub(crate) const G1_PATH: &str = "campaigns/robots/g1_12dof.toml";
+/// The shipped G1.
+pub(crate) const G1: &str = include_str!("../../../campaigns/robots/g1_12dof.toml");
+
+/// What a robot's file is.
+enum Format {
+    Table,
+    Urdf,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, RobotError> {
+        let is = |known: &str| {
+            path.extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(known))
+        };
+        if is("toml") {
+            Ok(Self::Table)
+        } else if is("urdf") {
+            Ok(Self::Urdf)
+        } else {
+            Err(RobotError::Format {
+                path: path.to_path_buf(),
+            })
+        }
+    }
+}
+
+impl Robot {
+    /// Reads a robot: a joint table (`.toml`) or a URDF (`.urdf`, with the default [`UrdfOptions`]).
+    ///
+    /// # Errors
+    /// If the file is unreadable or is no such robot, with file, key, value, limit and remedy.
+    pub fn load(path: &Path) -> Result<Self, RobotError> {
+        Self::parse(&Self::text(path)?, path)
+    }
+
+    /// The text of a robot's file.
+    ///
+    /// # Errors
+    /// If the file is unreadable, or neither a joint table nor a URDF by its name.
+    pub fn text(path: &Path) -> Result<String, RobotError> {
+        Format::of(path)?;
+        error::read(path)
+    }
+
+    /// Checks the text of a robot's file; `path` says what it is, and is for messages.
+    ///
+    /// # Errors
+    /// As [`Robot::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, RobotError> {
+        match Format::of(path)? {
+            Format::Table => table::parse(text, path),
+            Format::Urdf => urdf::parse(text, path, &UrdfOptions::default()),
+        }
+    }
+
+    /// The Unitree G1 with its upper body locked (campaigns/robots/g1_12dof.toml).
+    ///
+    /// # Errors
+    /// Never, as the tests show: the table is part of the program.
+    pub fn g1() -> Result<Self, RobotError> {
+        table::parse(G1, Path::new(G1_PATH))
+    }
+}
