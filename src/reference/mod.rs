@@ -1,117 +1,13 @@
 //! Where the agents are to go: r(t), r'(t) and r''(t) of every agent and channel.
 
 pub mod path;
+mod point;
+mod sinusoid;
+mod team;
 pub mod walk;
 
 pub use path::WaypointPath;
+pub use point::ReferencePoint;
+pub use sinusoid::Sinusoid;
+pub use team::{AgentWalk, Reference};
 pub use walk::Walk;
-
-use crate::agent::FIRST_ATTITUDE;
-use crate::agent::robot::{JOINTS, Robot};
-use std::sync::Arc;
-
-/// Channels of a UAV.
-const UAV_CHANNELS: usize = 6;
-
-/// The references of a team.
-#[derive(Debug, Clone)]
-pub enum Reference {
-    /// A sinusoid per agent and channel.
-    Sinusoid(Vec<Vec<Sinusoid>>),
-    /// A UAV's path per agent; the attitude is level and the yaw zero.
-    Waypoints(Vec<WaypointPath>),
-    /// A robot's walk per agent.
-    Walk(Vec<AgentWalk>),
-}
-
-/// A walk and when it begins.
-#[derive(Debug, Clone)]
-pub struct AgentWalk {
-    /// The walk; robots that go the same way share it.
-    pub walk: Arc<Walk>,
-    /// The time of the walk's beginning, s. Before it the robot stands, as after its end; a robot that began before 0 is on
-    /// its way.
-    pub start_s: f64,
-}
-
-/// r(t) = center + amplitude sin(frequency t + phase), in m or rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sinusoid {
-    /// Mean.
-    pub center: f64,
-    /// Amplitude.
-    pub amplitude: f64,
-    /// Angular frequency, rad/s.
-    pub frequency_rad_s: f64,
-    /// Phase at t = 0, rad.
-    pub phase_rad: f64,
-}
-
-/// A reference and its derivatives at one instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ReferencePoint {
-    /// r, m or rad.
-    pub value: f64,
-    /// r', 1/s.
-    pub rate: f64,
-    /// r'', 1/s^2.
-    pub acceleration: f64,
-}
-
-impl Reference {
-    /// The reference of all channels of an agent at time `t_s`.
-    #[must_use]
-    pub fn at(&self, agent: usize, t_s: f64) -> Vec<ReferencePoint> {
-        match self {
-            Self::Sinusoid(agents) => {
-                let channels = agents[agent].iter();
-                channels.map(|sinusoid| sinusoid.at(t_s)).collect()
-            }
-            Self::Waypoints(paths) => {
-                let point = paths[agent].at(t_s);
-                let channel = |channel: usize| {
-                    if channel < FIRST_ATTITUDE {
-                        ReferencePoint {
-                            value: point.position[channel],
-                            rate: point.velocity[channel],
-                            acceleration: point.acceleration[channel],
-                        }
-                    } else {
-                        ReferencePoint::default()
-                    }
-                };
-                (0..UAV_CHANNELS).map(channel).collect()
-            }
-            Self::Walk(walks) => {
-                let AgentWalk { walk, start_s } = &walks[agent];
-                walk.at(t_s - start_s).to_vec()
-            }
-        }
-    }
-
-    /// The torques J'f, N m, with which the ground answers an agent's walk at time `t_s`; none where nobody walks.
-    #[must_use]
-    pub fn ground_reaction(&self, robot: &Robot, agent: usize, t_s: f64) -> [f64; JOINTS] {
-        match self {
-            Self::Walk(walks) => {
-                let AgentWalk { walk, start_s } = &walks[agent];
-                walk::ground_reaction(walk, robot, t_s - start_s).torque_n_m
-            }
-            Self::Sinusoid(_) | Self::Waypoints(_) => [0.0; JOINTS],
-        }
-    }
-}
-
-impl Sinusoid {
-    /// The sinusoid at time `t_s`.
-    #[must_use]
-    pub fn at(&self, t_s: f64) -> ReferencePoint {
-        let (sine, cosine) = (self.frequency_rad_s * t_s + self.phase_rad).sin_cos();
-        let rate = self.amplitude * self.frequency_rad_s;
-        ReferencePoint {
-            value: self.center + self.amplitude * sine,
-            rate: rate * cosine,
-            acceleration: -rate * self.frequency_rad_s * sine,
-        }
-    }
-}

@@ -2,7 +2,6 @@
 
 use std::array::from_fn;
 
-use super::PathPoint;
 use super::spline::{Piece, Vector, dot, norm, scale};
 
 /// Peaks of |b'| and |b''| of the quintic law b, at τ = 1/2 and at τ = 1/2 ± √3/6 (10/√3).
@@ -39,6 +38,17 @@ struct Arc {
     to: f64,
     /// Arc length of the curve before this arc, m.
     start: f64,
+}
+
+/// Position at one instant with its first two time derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Acceleration, m/s².
+    pub acceleration: [f64; 3],
 }
 
 /// A largest acceleration and where it occurs.

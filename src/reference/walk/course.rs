@@ -1,7 +1,9 @@
 //! The line to walk: waypoints smoothed, with a heading at every point (paper, section III-B).
 
+use super::error::WalkError;
+use super::gait::Gait;
+use super::samples::{MAX_SAMPLES, count, floor};
 use super::spline::Spline;
-use super::{Gait, MAX_SAMPLES, WalkError};
 use std::f64::consts::TAU;
 
 /// Shorter legs are coincident waypoints.
@@ -236,18 +238,4 @@ fn with_headings(points: &[[f64; 2]]) -> Vec<Placement> {
         });
     }
     samples
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a small count that is not negative; the cast saturates"
-)]
-pub(super) fn floor(x: f64) -> usize {
-    x as usize
-}
-
-#[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
-pub(super) fn count(n: usize) -> f64 {
-    n as f64
 }

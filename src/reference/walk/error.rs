@@ -1,6 +1,6 @@
 //! Why there is no walk.
 
-use super::Foot;
+use super::foot::Foot;
 use thiserror::Error;
 
 /// Why waypoints and a gait do not give a walk. Indices count from zero, times from the start.

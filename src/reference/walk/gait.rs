@@ -1,6 +1,7 @@
 //! The numbers of a gait.
 
-use super::{Foot, WalkError};
+use super::error::WalkError;
+use super::foot::Foot;
 
 /// How a robot walks. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]

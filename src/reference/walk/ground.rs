@@ -1,7 +1,7 @@
 //! What the ground does to the joints along the walk: J'f, an optional disturbance.
 
-use super::Walk;
-use super::feet::Foot;
+use super::foot::Foot;
+use super::plan::Walk;
 use crate::agent::robot::wrench;
 use crate::agent::robot::wrench::{JointMotion, PelvisMotion, whole_body_wrench};
 use crate::agent::robot::{JOINTS, Robot};

@@ -2,8 +2,10 @@
 //! mass along (paper, section III-B).
 
 use super::course::Placement;
-use super::feet::{Ankle, Foot};
-use super::{Gait, WalkError};
+use super::error::WalkError;
+use super::feet::Ankle;
+use super::foot::Foot;
+use super::gait::Gait;
 use crate::agent::robot::kinematics::{by_leg, com_m, joined, leg_pose};
 use crate::agent::robot::{JOINTS, Leg, Robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3, Vector6};

@@ -1,6 +1,6 @@
 //! Clamped cubic spline of several channels: the line to walk, a swing, the pelvis, the joints.
 
-use crate::reference::ReferencePoint;
+use crate::reference::point::ReferencePoint;
 use std::array::from_fn;
 
 /// Cubic spline through values at increasing knots, with continuous first and second derivatives.

@@ -1,8 +1,9 @@
 //! The zero moment point that the walk is planned around, and the polygon it must stay in.
 
-use super::Gait;
 use super::course::Placement;
-use super::feet::{Feet, Foot};
+use super::feet::Feet;
+use super::foot::Foot;
+use super::gait::Gait;
 use crate::agent::robot::Robot;
 
 /// The reference of the zero moment point: linear between its corners, constant outside.
