@@ -25,7 +25,12 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
     }
     let interrupted = missing(manifest, out)
         .map(|message| (NonSuccessKind::Error, "interrupted simulation", message));
-    suite.add_test_case(case(campaign, "simulation", manifest.times.loop_s, interrupted));
+    suite.add_test_case(case(
+        campaign,
+        "simulation",
+        manifest.times.loop_s,
+        interrupted,
+    ));
     let error = unchecked(manifest).map(|message| (NonSuccessKind::Error, "cross-check", message));
     let failure =
         differing(manifest).map(|message| (NonSuccessKind::Failure, "cross-check", message));

@@ -186,7 +186,12 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
         Backend::Auto => match Gpu::open(Wanted::Hardware) {
             Ok(gpu) => gpu,
             Err(GpuError::NoHardware { .. }) => return Ok((None, Vec::new())),
-            Err(error) => return Ok((None, vec![format!("the CPU simulated all episodes: {error}")])),
+            Err(error) => {
+                return Ok((
+                    None,
+                    vec![format!("the CPU simulated all episodes: {error}")],
+                ));
+            }
         },
     };
     Ok((Some(opened), Vec::new()))
