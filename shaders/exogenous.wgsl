@@ -1,5 +1,5 @@
-// Twin of src/model/exogenous/mod.rs and src/model/exogenous/command_path.rs: disturbances and faults of one channel, what is held over a step and
-// what varies within it.
+// Twin of src/model/exogenous/evaluation.rs, src/model/exogenous/command_path.rs and src/model/exogenous/inputs.rs:
+// disturbances and faults of one channel, what is held over a step and what varies within it.
 
 // A periodic signal; its list says of what shape. `held` is the amplitude of this step.
 struct Oscillation {

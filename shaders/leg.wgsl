@@ -1,4 +1,5 @@
-// Twin of src/model/plant/leg/mod.rs and src/model/plant/leg/link.rs: forward dynamics of a leg, (4). One invocation answers for a leg.
+// Twin of src/model/plant/leg/dynamics.rs and src/model/plant/leg/link.rs: forward dynamics of a leg, (4). One
+// invocation answers for a leg.
 //
 // TWIST_1 to TWIST_5 are constants, PARALLEL, RIGHT or ANY: what is asked of a twist is decided when the shader is compiled.
 

@@ -63,3 +63,8 @@ fn ln_split(mantissa: f32, exponent: f32) -> f32 {
     let small = fma(f2, -0.5, tail) + f;
     return fma(exponent, LN_2, small);
 }
+
+// `value` within `low` and `high`; `low` where it is NaN.
+fn clamp(value: f32, low: f32, high: f32) -> f32 {
+    return lane_min(lane_max(value, low), high);
+}

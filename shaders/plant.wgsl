@@ -37,7 +37,3 @@ struct Response {
     // Derivative of the plant's own states of the channel.
     extra_rate: vec2<f32>,
 }
-
-fn clamp(value: f32, low: f32, high: f32) -> f32 {
-    return lane_min(lane_max(value, low), high);
-}

@@ -8,7 +8,7 @@ use super::tracked::Tracked;
 use super::world::World;
 use crate::model::lanes::Lane;
 use crate::model::lanes::math;
-use crate::model::plant::clamp;
+use crate::model::lanes::math::clamp;
 use crate::model::plant::uav::{Axis, body_axis};
 use crate::random::philox::{Address, Stream, key, philox4x32, wide_product};
 use std::f32::consts::{FRAC_PI_2, PI};

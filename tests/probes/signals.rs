@@ -9,7 +9,8 @@ use super::world::{Flies, Scene, World, episode};
 use crate::backend::gpu::layout::NEVER;
 use crate::backend::gpu::signals::{switches, waves};
 use crate::model::exogenous::delay_line::Actuator;
-use crate::model::exogenous::{ExogenousInputs, Oscillation, turned};
+use crate::model::exogenous::evaluation::turned;
+use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::model::metric::Sample;
 

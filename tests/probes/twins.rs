@@ -13,7 +13,7 @@ type Pairs = &'static [(&'static str, &'static str)];
 const TWINS: &[(&str, &str, Pairs)] = &[
     (
         "lanes",
-        include_str!("../../src/model/lanes/mod.rs"),
+        include_str!("../../src/model/lanes/scalar.rs"),
         &[
             ("max", "lane_max"),
             ("min", "lane_min"),
@@ -36,6 +36,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
             ("tanh", "tanh"),
             ("atan2", "atan2"),
             ("ln_split", "ln_split"),
+            ("clamp", "clamp"),
         ],
     ),
     (
@@ -66,11 +67,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     (
         "plant",
         include_str!("../../src/model/plant/mod.rs"),
-        &[
-            ("reference", "reference"),
-            ("respond", "respond"),
-            ("clamp", "clamp"),
-        ],
+        &[("reference", "reference"), ("respond", "respond")],
     ),
     (
         "plant_uav",
@@ -96,7 +93,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "leg",
-        include_str!("../../src/model/plant/leg/mod.rs"),
+        include_str!("../../src/model/plant/leg/dynamics.rs"),
         &[("accelerations", "forward_dynamics")],
     ),
     (
@@ -159,9 +156,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     ),
     (
         "exogenous",
-        include_str!("../../src/model/exogenous/mod.rs"),
+        include_str!("../../src/model/exogenous/evaluation.rs"),
         &[
-            ("ticks", "exogenous_inputs_ticks"),
             ("hold", "exogenous_inputs_hold"),
             ("hold_sensor", "hold_sensor"),
             ("evaluate", "exogenous_inputs_evaluate"),
@@ -169,6 +165,11 @@ const TWINS: &[(&str, &str, Pairs)] = &[
             ("remember", "exogenous_inputs_remember"),
             ("turned", "oscillation_turned"),
         ],
+    ),
+    (
+        "exogenous inputs",
+        include_str!("../../src/model/exogenous/inputs.rs"),
+        &[("ticks", "exogenous_inputs_ticks")],
     ),
     (
         "command_path",
@@ -253,7 +254,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
     (&["turns_add"], "the addition of u32"),
     (
         &["sin_cos", "tanh", "atan2"],
-        "in lanes.rs, those of math.rs",
+        "in lanes/scalar.rs, those of math.rs",
     ),
     (
         &[

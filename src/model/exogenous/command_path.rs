@@ -7,8 +7,8 @@
 //!
 //! So only the limits of rate remember what acted; all else that is held lies before the actuator.
 
-use super::ExogenousInputs;
 use super::delay_line::Moment;
+use super::inputs::ExogenousInputs;
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {

@@ -10,7 +10,8 @@
 )]
 
 use super::window::Window;
-use crate::model::lanes::{Lane, MAX_WIDTH};
+use crate::model::lanes::math::clamp;
+use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
 /// The last samples of `NV` signals of each channel. A delay reads the oldest and puts the newest in its place; a replay stops
 /// recording at its onset, and reads the same samples again and again.
@@ -53,7 +54,7 @@ impl<L: Lane, const NC: usize> Actuator<L, NC> {
     /// One that obeys.
     pub(crate) fn sound() -> Self {
         let (zero, one) = (L::number(0.0), L::number(1.0));
-        let far = L::splat(<L::Real as crate::model::lanes::Real>::MAX);
+        let far = L::splat(L::Real::MAX);
         Self {
             gain: [one; NC],
             bias: [zero; NC],
@@ -65,7 +66,7 @@ impl<L: Lane, const NC: usize> Actuator<L, NC> {
     /// The command that acts on a channel.
     #[inline(always)]
     pub(crate) fn command(&self, c: usize, wanted: L) -> L {
-        crate::model::plant::clamp(
+        clamp(
             wanted.mul_add(self.gain[c], self.bias[c]),
             self.low[c],
             self.high[c],

@@ -1,8 +1,8 @@
-//! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type and number of channels, and not into every loop of
-//! every plant and controller.
+//! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type and
+//! number of channels, and not into every loop of every plant and controller.
 
-use super::ExogenousInputs;
 use super::delay_line::Moment;
+use super::inputs::ExogenousInputs;
 use super::vortex;
 use super::vortex::Vortex;
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};

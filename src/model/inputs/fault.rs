@@ -1,6 +1,6 @@
 //! From the draws of a fault to what it does to an agent's channels: the one place that says what each kind means.
 
-use super::{LaneBlock, Selection};
+use super::block::{LaneBlock, Selection, small};
 use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
 use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link};
 use crate::draw::{AgentDraw, FaultDraw, member};
@@ -354,16 +354,6 @@ fn loaded(
         inertia,
         force: tilting(uav, channel, mass_kg, offset_m),
     }
-}
-
-/// A count as a word of 32 bits.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a count, which saturates"
-)]
-pub(super) fn small(count: f64) -> u32 {
-    count.round() as u32
 }
 
 /// Whether a fault strikes one of the `count` channels from `first` on in some episode.

@@ -4,7 +4,7 @@
 //! The polynomials were fitted by iteratively reweighted least squares on Chebyshev nodes (near minimax); the error of
 //! each is stated beside it and tested. Double precision uses the standard library.
 
-use super::Lane;
+use super::lane::Lane;
 
 /// Spacing of the numbers that [`Lane::unit_from_words`] makes from 23 random bits.
 pub(crate) const UNIT_SPACING: f64 = 1.0 / 8_388_608.0;
@@ -173,4 +173,10 @@ pub(crate) fn ln_split<L: Lane>(mantissa: L, exponent: L) -> L {
     let tail = polynomial(f, &LN) * (f2 * f);
     let small = f2.mul_add(L::number(-0.5), tail) + f;
     exponent.mul_add(L::number(std::f64::consts::LN_2), small)
+}
+
+/// `value` within `low` and `high`; `low` where it is NaN.
+#[inline(always)]
+pub(crate) fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
+    value.max(low).min(high)
 }

@@ -5,8 +5,8 @@
     reason = "vector instructions are unsafe to call where the processor may lack them"
 )]
 
+use super::lane::{Kernel, Lane, Real};
 use super::math;
-use super::{Kernel, Lane, Real};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

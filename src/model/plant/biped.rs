@@ -10,8 +10,9 @@
 //! | 3, 4 | the joint's row of M(r)^-1 |
 
 use super::leg::{LEG_JOINTS, LegJoint, LegModel, forward_dynamics};
-use super::{Inputs, Plant, ReferenceRow, Response, clamp, tabulated};
+use super::{Inputs, Plant, ReferenceRow, Response, tabulated};
 use crate::agent::robot::Robot;
+use crate::model::lanes::math::clamp;
 use crate::model::lanes::{Lane, Real};
 
 /// Rows of a joint in the table.

@@ -88,9 +88,3 @@ pub(crate) fn splat_row<L: Lane>(row: &ReferenceRow<L::Real>) -> [L; 4] {
         L::splat(row[3]),
     ]
 }
-
-/// `value` within `low` and `high`; `low` where it is NaN.
-#[inline(always)]
-pub(crate) fn clamp<L: Lane>(value: L, low: L, high: L) -> L {
-    value.max(low).min(high)
-}

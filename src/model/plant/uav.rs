@@ -9,8 +9,9 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::{Inputs, Plant, ReferenceRow, Response, clamp, splat_row, tabulated};
+use super::{Inputs, Plant, ReferenceRow, Response, splat_row, tabulated};
 use crate::agent::{HEIGHT, Uav};
+use crate::model::lanes::math::clamp;
 use crate::model::lanes::{Lane, Real};
 
 /// Modelled inertia of each channel.

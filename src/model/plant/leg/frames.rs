@@ -1,6 +1,6 @@
 //! The constants of a leg: its description in the frames that the dynamics use, and its mass moved towards the pelvis.
 
-use super::{Build, Joint, LEG_JOINTS, LegJoint, LegModel, Twist};
+use super::parameters::{Build, Joint, LEG_JOINTS, LegJoint, LegModel, Twist};
 use crate::model::lanes::Real;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

@@ -3,7 +3,7 @@
 //! From the frame before there is a lever p, a twist about x and the joint's turn about z: a vector v of the link is
 //! Rx(twist) Rz(q) v there.
 
-use super::{Joint, LEG_JOINTS, LegModel, Twist};
+use super::parameters::{Joint, LEG_JOINTS, LegModel, Twist};
 use crate::model::lanes::Lane;
 
 type Vector<L> = [L; 3];

@@ -1,6 +1,6 @@
 //! A leg as the shaders read it.
 
-use super::{Joint, LEG_JOINTS, LegModel, Twist};
+use super::parameters::{Joint, LEG_JOINTS, LegModel, Twist};
 use bytemuck::{Pod, Zeroable};
 
 /// Twin of `Joint` in shaders/leg.wgsl.

@@ -1,0 +1,197 @@
+//! What acts on one agent's channels, as a step goes on: what switches, rises or is drawn is held over each step, and periodic
+//! parts are evaluated at each stage's time.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders"
+)]
+
+use super::delay_line::Moment;
+use super::inputs::{ExogenousInputs, Oscillation};
+use crate::model::lanes::{Lane, MAX_WIDTH};
+
+impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
+    /// Sets what is held over step number `step`; `team` is the sum of the team's last commands.
+    #[inline(always)]
+    pub(crate) fn hold(
+        &mut self,
+        step: u32,
+        team: &[L; NC],
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
+        let one = L::number(1.0);
+        let now = L::number(f64::from(step));
+        for c in 0..NC {
+            self.hold_command(c, step, team[c], seed, episodes);
+            self.hold_sensor(c, step, seed, episodes);
+            let mut force = self.constant[c];
+            for weight in &self.weights {
+                force = force + weight[c].at(now);
+            }
+            for turbulence in &self.turbulences {
+                force = force + turbulence.force(c);
+            }
+            self.held_disturbance[c] = force;
+            let mut grown = one;
+            for inertia in &self.inertias {
+                grown = grown + inertia[c].at(now);
+            }
+            self.inverse_inertia[c] = self.first_inverse_inertia[c];
+            if !self.inertias.is_empty() {
+                self.inverse_inertia[c] = self.first_inverse_inertia[c] / grown;
+            }
+            for waves in [
+                &mut self.sines,
+                &mut self.gusts,
+                &mut self.command_waves,
+                &mut self.sensor_waves,
+                &mut self.squares,
+            ] {
+                for wave in waves {
+                    wave[c].held = wave[c].switch.at(now);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn hold_sensor(
+        &mut self,
+        c: usize,
+        step: u32,
+        seed: u64,
+        episodes: &[u32; MAX_WIDTH],
+    ) {
+        let zero = L::number(0.0);
+        let now = L::number(f64::from(step));
+        let mut sensor = zero;
+        for added in &self.sensor_biases {
+            sensor = sensor + added[c].at(now);
+        }
+        for noise in &mut self.noises {
+            if step.is_multiple_of(4) {
+                noise.draw(c, step / 4, seed, episodes);
+            }
+            let sample = noise.samples[c][(step % 4) as usize];
+            sensor = sample.mul_add(noise.switch[c].at(now), sensor);
+        }
+        for outlier in &self.outliers {
+            let [size, sign] = outlier.at(c, step, seed, episodes);
+            sensor = size.mul_add(sign, sensor);
+        }
+        self.held_sensor[c] = sensor;
+        let mut scale = zero;
+        for added in &self.scales {
+            scale = scale + added[c].at(now);
+        }
+        self.scale[c] = scale;
+        let mut frozen = zero;
+        for hold in &self.sensor_holds {
+            let [holds, _] = hold.at(c, step, seed, episodes);
+            frozen = frozen.max(holds);
+        }
+        self.frozen[c] = if step == 0 { zero } else { frozen };
+        for ring in &mut self.sensor_rings {
+            ring.hold(c, step);
+        }
+    }
+
+    /// Evaluates d1, f2 and the actuators at a moment of step number `step`, whose phases are half a step further each.
+    #[inline(always)]
+    pub(crate) fn evaluate(&mut self, step: u32, moment: Moment) {
+        let advance = moment != Moment::Start;
+        let half = L::number(0.5);
+        self.disturbance = self.held_disturbance;
+        self.sensor_fault = self.held_sensor;
+        if moment == Moment::Start || !self.command_waves.is_empty() || self.carries() {
+            self.actuator.gain = self.command_gain;
+            self.actuator.bias = self.command_bias;
+        }
+        for sines in &mut self.sines {
+            for c in 0..NC {
+                let sine = turned(&mut sines[c], advance);
+                self.disturbance[c] = sine.mul_add(sines[c].held, self.disturbance[c]);
+            }
+        }
+        for gusts in &mut self.gusts {
+            for c in 0..NC {
+                let shape = turned(&mut gusts[c], advance).mul_add(half, half);
+                self.disturbance[c] = shape.mul_add(gusts[c].held, self.disturbance[c]);
+            }
+        }
+        for waves in &mut self.sensor_waves {
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], advance);
+                self.sensor_fault[c] = sine.mul_add(waves[c].held, self.sensor_fault[c]);
+            }
+        }
+        for squares in &mut self.squares {
+            for c in 0..NC {
+                let sine = turned(&mut squares[c], advance);
+                let shape = (sine * squares[c].inverse_smoothing).tanh();
+                self.sensor_fault[c] = shape.mul_add(squares[c].held, self.sensor_fault[c]);
+            }
+        }
+        for waves in &mut self.command_waves {
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], advance);
+                self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
+            }
+        }
+        if self.carries() {
+            self.carry_command(step, moment);
+        }
+        if !self.rate_limits.is_empty() {
+            self.limit_rate(step, moment);
+        }
+    }
+
+    /// x and x' as they are measured at a moment of the step.
+    #[inline(always)]
+    pub(crate) fn measure(&self, c: usize, moment: Moment, motion: [L; 2]) -> [L; 2] {
+        let [position, velocity] = motion;
+        let scale = self.scale[c];
+        let mut seen = [
+            position.mul_add(scale, position),
+            velocity.mul_add(scale, velocity),
+        ];
+        for ring in &self.sensor_rings {
+            seen = ring.recall(c, moment, seen);
+        }
+        let [last_position, last_velocity] = self.last_measured[c];
+        let half = L::number(0.5);
+        [
+            L::select_le(half, self.frozen[c], last_position, seen[0]),
+            L::select_le(half, self.frozen[c], last_velocity, seen[1]),
+        ]
+    }
+
+    /// Takes in what was wanted and what was at the start of step number `step`.
+    #[inline(always)]
+    pub(crate) fn remember(&mut self, c: usize, step: u32, wanted: L, motion: [L; 2]) {
+        self.last_measured[c] = self.measure(c, Moment::Start, motion);
+        self.last_command[c] = self.actuator.command(c, wanted);
+        self.remember_command(c, step, wanted);
+        let [position, velocity] = motion;
+        let scale = self.scale[c];
+        let mut seen = [
+            position.mul_add(scale, position),
+            velocity.mul_add(scale, velocity),
+        ];
+        for ring in &mut self.sensor_rings {
+            let recalled = ring.recall(c, Moment::Start, seen);
+            ring.record(c, step, seen);
+            seen = recalled;
+        }
+    }
+}
+
+/// The sine of a wave's phase, half a step later if it is to `advance`.
+#[inline(always)]
+pub(crate) fn turned<L: Lane>(wave: &mut Oscillation<L>, advance: bool) -> L {
+    if advance {
+        wave.phase = L::turns_add(wave.phase, wave.advance);
+    }
+    L::turns_sin(wave.phase)
+}

@@ -1,0 +1,198 @@
+//! From the draws of a disturbance to what it does to an agent's channels: the one place that says what each kind means.
+
+use super::block::{LaneBlock, Selection};
+use crate::agent::{FIRST_ATTITUDE, HEIGHT};
+use crate::campaign::{Disturbance, DisturbanceKind};
+use crate::draw::{AgentDraw, member};
+use crate::model::exogenous::dryden::{Dryden, at_rest};
+use crate::model::exogenous::noise::{Filter, Turbulence};
+use crate::model::exogenous::vortex::Vortex;
+use crate::model::exogenous::window::Window;
+use crate::model::exogenous::{ExogenousInputs, Oscillation};
+use crate::model::lanes::{Lane, MAX_WIDTH};
+use crate::random::philox::{Address, Stream};
+use std::f64::consts::TAU;
+
+impl LaneBlock<'_> {
+    /// Adds what a disturbance does, if it may act (or does) in some lane.
+    pub(super) fn add_disturbance<L: Lane, const NC: usize>(
+        &self,
+        signals: &mut ExogenousInputs<L, NC>,
+        disturbance: &Disturbance,
+        index: usize,
+        agent: usize,
+        first: usize,
+        entries: Selection,
+    ) {
+        let values = |parameter: usize, c: usize| {
+            self.lanes::<L>(agent, |draw| draw.disturbances[index][parameter][first + c])
+        };
+        let acts = |force: &dyn Fn(usize) -> [f64; MAX_WIDTH]| {
+            let acting = || (0..NC).any(|c| force(c).iter().any(|force| *force != 0.0));
+            entries == Selection::Possible || acting()
+        };
+        match disturbance.kind {
+            DisturbanceKind::Constant => {
+                for (c, constant) in signals.constant.iter_mut().enumerate() {
+                    *constant = *constant + L::load(&values(0, c));
+                }
+            }
+            DisturbanceKind::GroundReaction => {
+                for (c, ground) in signals.ground.iter_mut().enumerate() {
+                    *ground = *ground + L::load(&values(0, c));
+                }
+            }
+            DisturbanceKind::Sine if acts(&|c| values(0, c)) => {
+                signals.sines.push(std::array::from_fn(|c| Oscillation {
+                    switch: Window::always(L::load(&values(0, c))),
+                    inverse_smoothing: L::number(0.0),
+                    phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
+                    advance: self
+                        .advance::<L>(values(1, c).map(|frequency_rad_s| frequency_rad_s / TAU)),
+                    held: L::number(0.0),
+                }));
+            }
+            DisturbanceKind::Gust1Cosine => {
+                let blows = |c: usize| disturbance.kind.acts_on(first + c);
+                let force = |c: usize| {
+                    let (speed_m_s, gain_n_s_m) = (values(0, c), values(1, c));
+                    std::array::from_fn(|lane| {
+                        if blows(c) {
+                            speed_m_s[lane] * gain_n_s_m[lane]
+                        } else {
+                            0.0
+                        }
+                    })
+                };
+                if acts(&force) {
+                    let waves =
+                        std::array::from_fn(|c| self.gust(force(c), values(2, c), values(3, c)));
+                    signals.gusts.push(waves);
+                }
+            }
+            DisturbanceKind::Dryden => {
+                let blows = |c: usize| disturbance.kind.acts_on(first + c);
+                if (0..NC).any(blows) {
+                    signals
+                        .turbulences
+                        .push(self.turbulence(agent, index, first));
+                }
+            }
+            DisturbanceKind::Sine | DisturbanceKind::RotorVortex => {}
+        }
+    }
+
+    /// What an agent feels of the others' jets, where its channels are those of a place.
+    pub(super) fn vortices<L: Lane, const NC: usize>(
+        &self,
+        agent: usize,
+        first: usize,
+        entries: Selection,
+    ) -> Vec<Vortex<L>> {
+        if first > 0 || NC <= HEIGHT {
+            return Vec::new();
+        }
+        let all = self.campaign.disturbances.iter().enumerate();
+        let felt = all.filter(|(_, disturbance)| disturbance.kind == DisturbanceKind::RotorVortex);
+        felt.filter_map(|(index, _)| {
+            let of = |parameter: usize, pick: fn(f64) -> f64| {
+                self.lanes::<L>(agent, |draw| {
+                    pick(draw.disturbances[index][parameter][HEIGHT])
+                })
+            };
+            let force_n = of(0, |force_n| force_n);
+            let acts = force_n.iter().any(|force_n| *force_n != 0.0);
+            (acts || entries == Selection::Possible).then(|| Vortex {
+                force: L::load(&force_n),
+                inverse_radius: L::load(&of(1, f64::recip)),
+                inverse_length: L::load(&of(2, |length_m| 2.0 / length_m)),
+            })
+        })
+        .collect()
+    }
+
+    /// One turn of 1 - cos from an onset on.
+    fn gust<L: Lane>(
+        &self,
+        force_n: [f64; MAX_WIDTH],
+        onset_s: [f64; MAX_WIDTH],
+        duration_s: [f64; MAX_WIDTH],
+    ) -> Oscillation<L> {
+        let time = self.campaign.time;
+        let onsets = onset_s.map(|onset_s| f64::from(time.onset_step(onset_s)));
+        let steps = duration_s.map(|duration_s| time.whole_steps(duration_s));
+        // A quarter turn back, the sine is at its bottom.
+        let phases: [f64; MAX_WIDTH] =
+            std::array::from_fn(|lane| -onsets[lane] / steps[lane] - 0.25);
+        let ends: [f64; MAX_WIDTH] = std::array::from_fn(|lane| onsets[lane] + steps[lane]);
+        Oscillation {
+            switch: Window {
+                onset: L::load(&onsets),
+                end: L::load(&ends),
+                inverse_ramp: L::number(1.0),
+                value: L::load(&force_n),
+            },
+            inverse_smoothing: L::number(0.0),
+            phase: L::turns(&phases),
+            advance: L::turns(&steps.map(|steps| 0.5 / steps)),
+            held: L::number(0.0),
+        }
+    }
+
+    /// Turbulence along the axes of translation; nothing about the others.
+    fn turbulence<L: Lane, const NC: usize>(
+        &self,
+        agent: usize,
+        index: usize,
+        first: usize,
+    ) -> Turbulence<L, NC> {
+        let campaign = self.campaign;
+        let entry = u32::try_from(index).unwrap_or(u32::MAX);
+        let members = std::array::from_fn(|c| member(agent, first + c));
+        let filter = |c: usize, draw: &AgentDraw| {
+            let of = |parameter: usize| draw.disturbances[index][parameter][first + c];
+            if first + c < FIRST_ATTITUDE {
+                let wind = Dryden {
+                    wind_m_s: of(0),
+                    altitude_m: of(1),
+                    airspeed_m_s: of(2),
+                };
+                wind.filter(first + c, of(3), campaign.time.step_s)
+            } else {
+                Filter::still()
+            }
+        };
+        let at_start: [[[f64; MAX_WIDTH]; 2]; NC] = std::array::from_fn(|c| {
+            let mut state = [[0.0; MAX_WIDTH]; 2];
+            for lane in 0..L::WIDTH {
+                let address = Address {
+                    episode: self.episode(lane).index,
+                    stream: Stream::Turbulence,
+                    entry,
+                    member: members[c],
+                    index: u32::MAX,
+                };
+                for (state, own) in state.iter_mut().zip(at_rest(address, campaign.seed)) {
+                    state[lane] = own;
+                }
+            }
+            state
+        });
+        Turbulence {
+            entry,
+            members,
+            filter: std::array::from_fn(|c| {
+                let number = |pick: &dyn Fn(Filter<f64>) -> f64| {
+                    self.load(agent, |draw| pick(filter(c, draw)))
+                };
+                Filter {
+                    keep: number(&|filter| filter.keep),
+                    cross: number(&|filter| filter.cross),
+                    noise: std::array::from_fn(|k| number(&|filter| filter.noise[k])),
+                    output: std::array::from_fn(|k| number(&|filter| filter.output[k])),
+                }
+            }),
+            state: at_start.map(|state| state.map(|values| L::load(&values))),
+        }
+    }
+}
