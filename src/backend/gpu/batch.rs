@@ -6,6 +6,7 @@ use super::device::{Gpu, Use};
 use super::layout;
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use super::pipeline::{ENTRIES, Entry, Pipeline, binding_layout, shape};
+use super::tuning::Tuning;
 use super::uniforms::setting;
 use crate::backend::EpisodeResult;
 use crate::campaign::Campaign;
@@ -25,15 +26,6 @@ const DISPATCH: Duration = Duration::from_millis(100);
 const FIRST_STEPS: u32 = 4;
 /// Samples of a trace between two read-backs.
 const SAMPLES: u32 = 64;
-
-/// How the work is cut up. The result does not depend on it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Tuning {
-    /// Episodes per batch, as far as the adapter allows; else as many as fit.
-    pub batch: Option<u32>,
-    /// Steps per dispatch, as far as the adapter allows; else what takes about 0.1 s.
-    pub steps: Option<u32>,
-}
 
 /// Wall-clock times of a GPU's flying, s.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -1,11 +1,11 @@
 //! What a batch of episodes needs on the device, within the limits of buffers and memory.
 
 use super::GpuError;
-use super::batch::Tuning;
 use super::device;
 use super::device::{Gpu, Use};
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use super::pipeline::{MAX_BATCH, Pipeline};
+use super::tuning::Tuning;
 use crate::model::episode::Model;
 use std::ops::Range;
 

@@ -133,6 +133,13 @@ impl<'l> Layout<'l> {
     }
 }
 
+impl Shape {
+    /// Where a channel's words are.
+    pub(crate) fn words(&self) -> Layout<'_> {
+        Layout::new(&self.lists, self.states())
+    }
+}
+
 /// Twin of `Span` in shaders/episode.wgsl.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]

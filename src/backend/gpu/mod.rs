@@ -12,6 +12,8 @@ pub(crate) mod layout;
 mod pipeline;
 pub(crate) mod shape;
 pub(crate) mod signals;
+mod source;
+mod tuning;
 pub(crate) mod uniforms;
 
 #[cfg(test)]
@@ -19,8 +21,9 @@ pub(crate) mod uniforms;
 mod probes;
 
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
-pub use batch::{GpuSimulator, GpuTimes, Tuning};
+pub use batch::{GpuSimulator, GpuTimes};
 pub use device::Gpu;
+pub use tuning::Tuning;
 
 use crate::util::suggest::did_you_mean;
 use thiserror::Error;
