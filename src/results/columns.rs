@@ -1,7 +1,10 @@
 //! The summary, the comparisons and the screening as tables.
 
-use super::tables::{Row, Table};
-use super::{Measured, MetricQuantiles, PairedComparison, Replicated, Screening};
+use super::paired::{Measured, PairedComparison};
+use super::replicates::Replicated;
+use super::screening::Screening;
+use super::summary::MetricQuantiles;
+use super::table::{Row, Table};
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, Interval};
 

@@ -1,8 +1,9 @@
 //! How pairs of controllers compare on the same episodes.
 
+use super::replicates::{Replicated, over_replicates};
+use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::tables::{Scores, Status};
-use super::{Layout, Replicated, over_replicates};
+use super::team::Layout;
 use crate::campaign::Campaign;
 use crate::random::{Method, allows};
 use crate::statistics::LEVEL;
@@ -243,7 +244,7 @@ fn ratio(
 
 /// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them diverged,
 /// 0 where both did.
-pub(crate) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
+pub(super) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
     let of_episode = |episode: usize| {
         let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
         match (gone(a), gone(b)) {

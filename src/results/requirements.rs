@@ -1,8 +1,8 @@
 //! Whether a campaign's `[[require]]` hold.
 
+use super::scores::Scores;
 use super::strata::parts;
 use super::summary::FailureRate;
-use super::tables::Scores;
 use crate::campaign::{ALL, Campaign, Requirement};
 use serde::{Deserialize, Serialize};
 

@@ -5,9 +5,10 @@
 //! Statistics 9:1026-1034): one is ruled out if another is worse by a one-sided interval at 1 - 5 % / (k - 1), of k strata. The
 //! stratum that is truly the worst meets k - 1 others, so it is ruled out with a probability of 5 % at most, whichever it is.
 
+use super::scores::Scores;
 use super::strata::{Subset, parts};
-use super::tables::Scores;
-use super::{FailureRate, Layout, team_rmse};
+use super::summary::FailureRate;
+use super::team::{Layout, team_rmse};
 use crate::agent::ChannelGroup;
 use crate::campaign::{Campaign, StratumFaults};
 use crate::statistics::LEVEL;

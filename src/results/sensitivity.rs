@@ -1,7 +1,9 @@
 //! Which condition breaks it: the effect of what was drawn on how the controllers fared, and the worst episodes.
 
-use super::tables::{Scores, Status, Table};
-use super::{Layout, log_ratios, team_rmse};
+use super::paired::log_ratios;
+use super::scores::{Scores, Status};
+use super::table::Table;
+use super::team::{Layout, team_rmse};
 use crate::agent::ChannelGroup;
 use crate::campaign::{Campaign, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;

@@ -1,6 +1,6 @@
 //! The parts of a run that are looked at on their own.
 
-use super::tables::Scores;
+use super::scores::Scores;
 use crate::campaign::{ALL, Campaign};
 use std::sync::Arc;
 

@@ -1,8 +1,9 @@
 //! How often each controller failed, and how large its errors were.
 
+use super::replicates::over_replicates;
+use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::tables::{Scores, Status};
-use super::{Layout, over_replicates};
+use super::team::{Layout, root_mean_square};
 use crate::agent::ChannelGroup;
 use crate::campaign::Campaign;
 use crate::random::{Method, allows};
@@ -138,7 +139,7 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                         let of_team = layout.of(&values[controller], episode);
                         match scores.status[controller][episode] {
                             Status::Diverged => f64::INFINITY,
-                            _ if metric == "rmse" => super::root_mean_square(of_team),
+                            _ if metric == "rmse" => root_mean_square(of_team),
                             _ => of_team.fold(0.0, f64::max),
                         }
                     };

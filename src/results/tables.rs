@@ -1,138 +1,16 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
+use super::scores::{Scores, Status, status};
+use super::table::{Row, Table};
 use crate::agent::{Agent, ChannelGroup};
 use crate::backend::EpisodeResult;
 use crate::campaign::{Campaign, Time};
 use crate::draw::AgentDraw;
 use crate::draw::quantities::{DrawnQuantity, conditions};
 use crate::model::episode::AgentOutcome;
+use crate::model::inputs::later_onsets;
 use crate::model::metric::ChannelOutcome;
-use polars::prelude::{
-    Column, DataFrame, Float64Chunked, IntoColumn, NamedFrom, NewChunkedArray, PlSmallStr,
-    PolarsError, Series,
-};
 use std::sync::Arc;
-
-/// How an agent or an episode ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Within the limits.
-    Ok,
-    /// Finite, but a limit of the verdict was broken.
-    Exceeded,
-    /// Left the numbers; ranks worst in every comparison.
-    Diverged,
-}
-
-impl Status {
-    /// The word in the tables.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Ok => "ok",
-            Self::Exceeded => "exceeded",
-            Self::Diverged => "diverged",
-        }
-    }
-}
-
-/// A table under construction: columns are made by the first row, and every row fills them in the same order.
-#[derive(Debug, Clone, Default)]
-pub struct Table {
-    columns: Vec<(String, Values)>,
-}
-
-/// A column under construction. A real that is not a number stands for "does not apply" and becomes a null.
-#[derive(Debug, Clone)]
-enum Values {
-    Real(Vec<f64>),
-    Count(Vec<u64>),
-    Word(Vec<&'static str>),
-    Name(Vec<Arc<str>>),
-    Flag(Vec<bool>),
-}
-
-/// A row being added to a [`Table`].
-pub struct Row<'a> {
-    table: &'a mut Table,
-    next: usize,
-}
-
-macro_rules! cell {
-    ($(#[$doc:meta])* $method:ident, $variant:ident, $value:ty) => {
-        $(#[$doc])*
-        pub fn $method(&mut self, name: impl FnOnce() -> String, value: $value) -> &mut Self {
-            if self.next == self.table.columns.len() {
-                self.table.columns.push((name(), Values::$variant(Vec::new())));
-            }
-            if let Some((_, Values::$variant(values))) = self.table.columns.get_mut(self.next) {
-                values.push(value);
-            }
-            self.next += 1;
-            self
-        }
-    };
-}
-
-impl Row<'_> {
-    cell!(/// A real number; not a number where it does not apply.
-        real, Real, f64);
-    cell!(/// A number of things.
-        count, Count, u64);
-    cell!(/// A word of a fixed list.
-        word, Word, &'static str);
-    cell!(/// A name.
-        name, Name, Arc<str>);
-    cell!(/// Yes or no.
-        flag, Flag, bool);
-
-    /// A real number where it applies.
-    pub fn real_if(&mut self, name: &str, value: Option<f64>) -> &mut Self {
-        self.real(|| name.to_string(), value.unwrap_or(f64::NAN))
-    }
-}
-
-impl Table {
-    /// Begins a row.
-    pub fn row(&mut self) -> Row<'_> {
-        Row {
-            table: self,
-            next: 0,
-        }
-    }
-
-    /// Whether no row was begun.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.columns.is_empty()
-    }
-
-    /// The finished table.
-    ///
-    /// # Errors
-    /// If the rows did not all fill the same columns.
-    pub fn to_frame(&self) -> Result<DataFrame, PolarsError> {
-        let columns = self.columns.iter().map(|(name, values)| {
-            let name = PlSmallStr::from_str(name);
-            match values {
-                Values::Real(values) => {
-                    let present = values
-                        .iter()
-                        .map(|value| (!value.is_nan()).then_some(*value));
-                    Float64Chunked::from_iter_options(name, present).into_column()
-                }
-                Values::Count(values) => Series::new(name, values).into_column(),
-                Values::Word(values) => Series::new(name, values).into_column(),
-                Values::Name(values) => {
-                    let names: Vec<&str> = values.iter().map(AsRef::as_ref).collect();
-                    Series::new(name, names).into_column()
-                }
-                Values::Flag(values) => Series::new(name, values).into_column(),
-            }
-        });
-        DataFrame::new_infer_height(columns.collect::<Vec<Column>>())
-    }
-}
 
 /// The tables of a run, and the numbers that its statistics read.
 #[derive(Debug, Clone)]
@@ -145,55 +23,6 @@ pub struct Tables {
     pub scores: Scores,
     /// Names of the controllers, shared by all rows.
     names: Vec<Arc<str>>,
-}
-
-/// The numbers that the statistics of a run read. Episodes are in order; so are controllers, agents and channels.
-#[derive(Debug, Clone, Default)]
-pub struct Scores {
-    /// Worst status of the team, `[controller][episode]`.
-    pub status: Vec<Vec<Status>>,
-    /// RMS error, `[controller]` then episode, agent, channel in one list.
-    pub rmse: Vec<Vec<f64>>,
-    /// Largest error, laid out like `rmse`.
-    pub max_abs: Vec<Vec<f64>>,
-    /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
-    pub failed_step: Vec<Vec<Option<u32>>>,
-    /// Whether an agent of the episode has the fault, `[fault][episode]`.
-    pub fault_occurs: Vec<Vec<bool>>,
-    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]).
-    pub conditions: Vec<(String, Vec<Option<f64>>)>,
-}
-
-impl Scores {
-    /// Episodes so far.
-    #[must_use]
-    pub fn episodes(&self) -> usize {
-        self.status.first().map_or(0, Vec::len)
-    }
-
-    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that are none
-    /// are all alike.
-    #[must_use]
-    pub fn holds(
-        &self,
-        campaign: &Campaign,
-        controller: usize,
-        episode: u32,
-        agents: &[AgentOutcome],
-    ) -> bool {
-        let stride = campaign.team * campaign.channels().len();
-        let rows = episode as usize * stride..(episode as usize + 1) * stride;
-        let same = |kept: &[f64], pick: fn(&ChannelOutcome) -> f64| {
-            let again = agents.iter().flat_map(|agent| &agent.channels).map(pick);
-            let kept = kept.get(rows.clone()).unwrap_or_default();
-            kept.len() == stride
-                && kept.iter().zip(again).all(|(kept, again)| {
-                    kept.to_bits() == again.to_bits() || kept.is_nan() && again.is_nan()
-                })
-        };
-        same(&self.rmse[controller], |metrics| metrics.rmse)
-            && same(&self.max_abs[controller], |metrics| metrics.max_abs)
-    }
 }
 
 impl Tables {
@@ -278,22 +107,6 @@ impl Tables {
     }
 }
 
-/// What the verdict of a campaign makes of an agent's outcome.
-#[must_use]
-pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
-    // max_error was judged step by step, in the precision of the loop.
-    let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
-        metrics.rmse > campaign.verdict.max_rmse[channel]
-    };
-    if outcome.diverged {
-        Status::Diverged
-    } else if outcome.failed_step.is_some() || outcome.channels.iter().enumerate().any(too_large) {
-        Status::Exceeded
-    } else {
-        Status::Ok
-    }
-}
-
 /// An agent's outcome and what the verdict makes of it.
 struct AgentVerdict<'a> {
     outcome: &'a AgentOutcome,
@@ -307,9 +120,7 @@ impl<'a> AgentVerdict<'a> {
         Self {
             outcome,
             status: status(campaign, outcome),
-            first_fault: crate::model::inputs::later_onsets(campaign, draw)
-                .into_iter()
-                .min(),
+            first_fault: later_onsets(campaign, draw).into_iter().min(),
         }
     }
 

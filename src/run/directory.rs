@@ -3,7 +3,7 @@
 use super::error::{MANIFEST, OutputError, REPORTS, TABLES};
 use super::manifest::{Manifest, campaign_hash};
 use crate::campaign::Campaign;
-use crate::results::tables::Table;
+use crate::results::table::Table;
 use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};

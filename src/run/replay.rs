@@ -8,7 +8,7 @@ use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
-use crate::results::tables::Table;
+use crate::results::table::Table;
 use crate::simulation::Engine;
 use crate::simulation::attenuation::{AttenuationAnalysis, Attenuations};
 use crate::util::suggest::did_you_mean;

@@ -10,7 +10,7 @@ use crate::controllers::GainSet;
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::random::philox::{Address, Stream};
-use crate::results::tables::{Scores, Status, status};
+use crate::results::scores::{Scores, Status, status};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

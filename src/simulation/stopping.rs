@@ -5,7 +5,7 @@
 //! ends at the same episode whatever the batches and threads.
 
 use crate::campaign::{Campaign, Goal, Stop};
-use crate::results::tables::Status;
+use crate::results::scores::Status;
 use crate::statistics::{Interval, Proof, sequential_lower, sequential_proof, sequential_upper};
 use serde::{Deserialize, Serialize};
 

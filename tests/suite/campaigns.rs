@@ -6,7 +6,7 @@ use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::{Campaign, Distribution, FaultKind, FaultTarget};
 use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
-use urts_mc::results::tables::Status;
+use urts_mc::results::scores::Status;
 use urts_mc::results::{compare, summarise};
 
 #[test]

@@ -3,8 +3,8 @@
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
 use urts_mc::random::philox::{Address, Stream};
+use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::sensitivity::worst;
-use urts_mc::results::tables::{Scores, Status};
 use urts_mc::results::{
     compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
 };

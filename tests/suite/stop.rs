@@ -6,7 +6,7 @@ use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, Goal};
 use urts_mc::controllers::GainSet;
 use urts_mc::random::philox::{Address, Stream};
-use urts_mc::results::tables::Status;
+use urts_mc::results::scores::Status;
 use urts_mc::results::{summarise, summary_table};
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;

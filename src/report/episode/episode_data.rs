@@ -5,7 +5,7 @@ use crate::draw::{Episode, FaultDraw, draw};
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::report::page::plot::{Color, thinned};
-use crate::results::tables::{Status, status};
+use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
 use std::cmp::Ordering;
 

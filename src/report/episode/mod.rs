@@ -11,7 +11,7 @@ mod walk;
 use super::page::document::{Block, Cell, Document, Grid, Section};
 use super::page::html::html;
 use crate::agent::Agent;
-use crate::results::tables::{Status, status};
+use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
 use crate::util::format::number;
 use curves::{Quantity, figure};

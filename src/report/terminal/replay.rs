@@ -5,7 +5,7 @@ use super::style::{bad, heading};
 use super::{attenuation, line};
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
-use crate::results::tables::{Status, status};
+use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
 use crate::run::replay_files::ReplayFiles;
 use crate::simulation::attenuation::{Attenuation, NotApplicable};

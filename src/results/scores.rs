@@ -1,0 +1,93 @@
+//! How episodes ended, and the numbers that the statistics of a run read.
+
+use crate::campaign::Campaign;
+use crate::model::episode::AgentOutcome;
+use crate::model::metric::ChannelOutcome;
+
+/// How an agent or an episode ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Within the limits.
+    Ok,
+    /// Finite, but a limit of the verdict was broken.
+    Exceeded,
+    /// Left the numbers; ranks worst in every comparison.
+    Diverged,
+}
+
+impl Status {
+    /// The word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Exceeded => "exceeded",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+/// What the verdict of a campaign makes of an agent's outcome.
+#[must_use]
+pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
+    // max_error was judged step by step, in the precision of the loop.
+    let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
+        metrics.rmse > campaign.verdict.max_rmse[channel]
+    };
+    if outcome.diverged {
+        Status::Diverged
+    } else if outcome.failed_step.is_some() || outcome.channels.iter().enumerate().any(too_large) {
+        Status::Exceeded
+    } else {
+        Status::Ok
+    }
+}
+
+/// The numbers that the statistics of a run read. Episodes are in order; so are controllers, agents and channels.
+#[derive(Debug, Clone, Default)]
+pub struct Scores {
+    /// Worst status of the team, `[controller][episode]`.
+    pub status: Vec<Vec<Status>>,
+    /// RMS error, `[controller]` then episode, agent, channel in one list.
+    pub rmse: Vec<Vec<f64>>,
+    /// Largest error, laid out like `rmse`.
+    pub max_abs: Vec<Vec<f64>>,
+    /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
+    pub failed_step: Vec<Vec<Option<u32>>>,
+    /// Whether an agent of the episode has the fault, `[fault][episode]`.
+    pub fault_occurs: Vec<Vec<bool>>,
+    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]).
+    pub conditions: Vec<(String, Vec<Option<f64>>)>,
+}
+
+impl Scores {
+    /// Episodes so far.
+    #[must_use]
+    pub fn episodes(&self) -> usize {
+        self.status.first().map_or(0, Vec::len)
+    }
+
+    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that are none
+    /// are all alike.
+    #[must_use]
+    pub fn holds(
+        &self,
+        campaign: &Campaign,
+        controller: usize,
+        episode: u32,
+        agents: &[AgentOutcome],
+    ) -> bool {
+        let stride = campaign.team * campaign.channels().len();
+        let rows = episode as usize * stride..(episode as usize + 1) * stride;
+        let same = |kept: &[f64], pick: fn(&ChannelOutcome) -> f64| {
+            let again = agents.iter().flat_map(|agent| &agent.channels).map(pick);
+            let kept = kept.get(rows.clone()).unwrap_or_default();
+            kept.len() == stride
+                && kept.iter().zip(again).all(|(kept, again)| {
+                    kept.to_bits() == again.to_bits() || kept.is_nan() && again.is_nan()
+                })
+        };
+        same(&self.rmse[controller], |metrics| metrics.rmse)
+            && same(&self.max_abs[controller], |metrics| metrics.max_abs)
+    }
+}
