@@ -9,7 +9,7 @@
 //! There is no fault before t = 0. A fault that is not zero at t = 0 reaches the later taps as a jump at h, 2 h, ..: v is what
 //! lies between the jumps, and V(0) of (24) counts by how much they raise V, as it counts the state at t = 0.
 
-use super::NotApplicable;
+use super::applicability::NotApplicable;
 use crate::synthesis::{
     Certificate, ChannelDesign, ControllerGains, ERROR_STATES, LOOP_STATES, MAX_WINDOW, RELAXATION,
     augmented_channel,

@@ -6,7 +6,7 @@
 mod applicability;
 mod channel;
 
-pub use applicability::{is_smooth, obstacle};
+pub use applicability::{NotApplicable, is_smooth, obstacle};
 pub use channel::{Attenuation, AttenuationInequality, Sample, Stretch};
 
 use crate::agent::ChannelGroup;
@@ -17,69 +17,9 @@ use crate::draw::{Episode, draw};
 use crate::model::episode::Snapshot;
 use crate::synthesis::{ChannelDesign, poles};
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A pole times a step at which the central differences of its decay are right to 2 %.
 const RESOLVED: f64 = 0.25;
-
-/// Why (24) says nothing about a channel of a flight.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum NotApplicable {
-    /// A PID.
-    #[error("the controller does not estimate the faults")]
-    NoEstimate,
-    /// Gains of an older run.
-    #[error("gains.json holds no certificate of these gains")]
-    NoCertificate,
-    /// A certificate that does not verify.
-    #[error("the certificate in gains.json does not belong to these gains and weights")]
-    OtherCertificate,
-    /// Thrust along the body axis.
-    #[error("under thrust the command filter stands between u_fb and the plant")]
-    CommandFilter,
-    /// What (19) does not know.
-    #[error(
-        "[control] changes the loop: (19) knows no delay, no sampled controller and no measured integral"
-    )]
-    LoopOptions,
-    /// A disturbance that is not differentiable.
-    #[error("disturbance {entry} ({kind}) is not continuously differentiable in time")]
-    RoughDisturbance {
-        /// Which of the campaign.
-        entry: usize,
-        /// What it is.
-        kind: &'static str,
-    },
-    /// A fault that is not differentiable.
-    #[error("fault {entry} ({kind}) is not continuously differentiable in time")]
-    RoughFault {
-        /// Which of the campaign.
-        entry: usize,
-        /// What it is.
-        kind: &'static str,
-    },
-    /// A flight that left the numbers.
-    #[error("the flight is not finite from {t_s:.3} s on")]
-    NotFinite {
-        /// Since when, s.
-        t_s: f64,
-    },
-    /// Limits, a delay or a hold.
-    #[error("the feedback is not K ehat at {t_s:.3} s: a limit cuts it, or it is held")]
-    OtherFeedback {
-        /// When first, s.
-        t_s: f64,
-    },
-    /// An integral that is measured.
-    #[error("the first output is not the integral of e")]
-    OtherIntegral,
-    /// Faults too fast for the step.
-    #[error("the step does not resolve how the faults move; use a smaller step_s")]
-    Unresolved,
-    /// No fault at all.
-    #[error("there is nothing to attenuate: v is zero")]
-    NoModelError,
-}
 
 /// What (24) says about each channel of a flight, `[agent][channel]`.
 pub type Attenuations = Vec<Vec<Result<Attenuation, NotApplicable>>>;
