@@ -1,6 +1,6 @@
 //! The counterparts of the paper's figures.
 
-use super::PaperError;
+use super::error::PaperError;
 use super::flights::{Scenario, Scenarios};
 use crate::campaign::Campaign;
 use crate::model::ChannelSample;

@@ -1,6 +1,6 @@
 //! The flights that figures and claims are read from, and what is met in them.
 
-use super::PaperError;
+use super::error::PaperError;
 use super::measures::Series;
 use crate::backend::cpu::{Cpu, Precision};
 use crate::campaign::{Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter};

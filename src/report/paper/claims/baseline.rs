@@ -1,11 +1,9 @@
 //! Figures 19 and 20: the PID without fault tolerance beside the FTC.
 
-use super::{
-    Found, Grouped, SETTLED_S, grouped, own, quotients, rate, times, top, with_units,
-    worst_of_groups,
-};
+use super::found::{Found, SETTLED_S};
+use super::groups::{Grouped, grouped, own, quotients, rate, times, with_units, worst_of_groups};
 use crate::report::paper::flights::{Scenario, Scenarios};
-use crate::report::paper::measures::rms;
+use crate::report::paper::measures::{rms, top};
 use crate::util::format::number;
 
 /// An influence is revealed if it is so many times that under the FTC.

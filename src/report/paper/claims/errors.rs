@@ -1,9 +1,8 @@
 //! Figures 11 and 15: tracking errors and the errors of their estimates under the FTC.
 
-use super::{
-    BACK, Found, PEAK, SETTLED_S, STRETCH, back_s, calm, own, part, with_units, worst,
-    worst_of_groups,
-};
+use super::found::{Found, SETTLED_S};
+use super::groups::{own, with_units, worst, worst_of_groups};
+use super::jumps::{BACK, PEAK, STRETCH, back_s, calm, part};
 use crate::model::ChannelSample;
 use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::{Series, percent, top};

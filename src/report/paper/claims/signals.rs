@@ -1,9 +1,8 @@
 //! Figures 12 to 14 and 16 to 18: estimates of the faults, and the control.
 
-use super::{
-    BACK, CALM, Found, PEAK, SETTLED_S, back_s, calm, channels, grouped, part, quotients,
-    with_units, worst, worst_of_groups,
-};
+use super::found::{Found, SETTLED_S};
+use super::groups::{channels, grouped, quotients, with_units, worst, worst_of_groups};
+use super::jumps::{BACK, CALM, PEAK, back_s, calm, part};
 use crate::agent::Agent;
 use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::{Series, bottom, percent, rms, top};
