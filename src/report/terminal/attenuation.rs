@@ -1,7 +1,7 @@
 //! What inequality (24) says about flights.
 
-use super::line;
 use super::style::{bad, judged};
+use super::text::line;
 use crate::simulation::attenuation::{Attenuations, GroupAttenuation};
 use crate::util::format::number;
 

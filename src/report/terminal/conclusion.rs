@@ -1,7 +1,7 @@
 //! What a run comes to: its verdict and its requirements.
 
-use super::line;
 use super::style::{heading, judged};
+use super::text::line;
 use crate::campaign::Campaign;
 use crate::results::{RequirementResult, how_sure};
 use crate::run::Findings;

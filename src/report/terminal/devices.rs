@@ -1,6 +1,6 @@
 //! The GPUs of this machine, and which of them a run would take.
 
-use super::line;
+use super::text::line;
 use crate::backend::cpu::Simd;
 use crate::backend::gpu::AdapterReport;
 

@@ -1,6 +1,6 @@
 //! The ranges of all that a campaign draws.
 
-use super::line;
+use super::text::line;
 use crate::agent::Agent;
 use crate::campaign::Campaign;
 use crate::draw::draw;

@@ -1,9 +1,10 @@
 //! What a run found, for people.
 
+use super::attenuation;
 use super::conclusion::{in_short, requirements};
 use super::screening::strata;
 use super::style::heading;
-use super::{attenuation, line};
+use super::text::{kind_of_interval, line};
 use crate::agent::ChannelRole;
 use crate::campaign::{ALL, Campaign};
 use crate::draw::quantities::title;
@@ -391,17 +392,6 @@ fn failures_text(comparison: &PairedComparison) -> String {
             }
         )),
     )
-}
-
-/// What the intervals of failure rates are.
-pub(super) fn kind_of_interval(campaign: &Campaign) -> &'static str {
-    if campaign.sampling.replicates().is_some() {
-        "t 95 %"
-    } else if campaign.stop.is_some() {
-        "sequential 95 %"
-    } else {
-        "Wilson 95 %"
-    }
 }
 
 /// The failure rates of all episodes.

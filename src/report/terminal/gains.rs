@@ -1,7 +1,7 @@
 //! Gains and what is known about them.
 
-use super::line;
 use super::style::{heading, judged};
+use super::text::line;
 use crate::campaign::{Campaign, FTC, PID, PID_TUNED};
 use crate::controllers;
 use crate::controllers::{GainSet, built_in};

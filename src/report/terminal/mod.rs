@@ -13,6 +13,8 @@ mod replay;
 mod runs;
 mod screening;
 mod style;
+mod text;
+mod written;
 
 pub use devices::devices;
 pub use findings::findings;
@@ -22,37 +24,4 @@ pub use plan::{plan, plan_json};
 pub use replay::{replay, replay_json};
 pub use runs::{runs, runs_json};
 pub use style::BAD;
-
-use super::paper::Claim;
-use crate::run::error::REPORTS;
-use std::fmt::Write;
-use std::path::Path;
-
-/// Where the report of a run is.
-pub fn report(dir: &Path) -> String {
-    format!("the report: {}\n", dir.join(REPORTS[0]).display())
-}
-
-/// What became of the paper's claims, one a line, and where the figures are.
-pub fn paper(claims: &[Claim], dir: &Path) -> String {
-    let mut text = String::new();
-    for claim in claims {
-        let holds = match claim.holds {
-            Some(true) => "holds",
-            Some(false) => "FAILS",
-            None => "open ",
-        };
-        let (place, said, found) = (claim.place, claim.claim, &claim.measured);
-        line(&mut text, &format!("{holds}  {place}  {said}: {found}"));
-    }
-    line(
-        &mut text,
-        &format!("the figures: {}", dir.join("README.md").display()),
-    );
-    text
-}
-
-fn line(text: &mut String, content: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{content}");
-}
+pub use written::{paper, report};

@@ -2,7 +2,7 @@
 
 use super::drawn::{drawn, drawn_json};
 use super::effort::{lasting, seconds, steps};
-use super::line;
+use super::text::line;
 use crate::campaign::lints::cautions;
 use crate::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
 use crate::controllers::GainSet;

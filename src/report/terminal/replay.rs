@@ -1,8 +1,9 @@
 //! How a replayed episode went, for people and for programs.
 
+use super::attenuation;
 use super::findings_json::finite;
 use super::style::{bad, heading};
-use super::{attenuation, line};
+use super::text::line;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
 use crate::results::scores::{Status, status};

@@ -1,6 +1,6 @@
 //! How many episodes a claim about a failure rate needs.
 
-use super::line;
+use super::text::line;
 use crate::statistics::{power, runs_needed};
 use serde_json::{Value, json};
 

@@ -1,8 +1,7 @@
 //! How often each controller fails in each stratum, and what hurts it most.
 
-use super::findings::kind_of_interval;
-use super::line;
 use super::style::heading;
+use super::text::{kind_of_interval, line};
 use crate::campaign::Campaign;
 use crate::results::FailureRate;
 use crate::run::Findings;
