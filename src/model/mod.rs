@@ -15,7 +15,8 @@ pub(crate) mod integrator;
 pub mod lanes;
 pub mod metric;
 pub mod plant;
+pub(crate) mod sample;
 pub(crate) mod subsystem;
 pub(crate) mod team;
 
-pub use team::{ChannelSample, ObserverState};
+pub use sample::{ChannelSample, ObserverState};

@@ -49,6 +49,7 @@ impl FaultLanes<'_> {
         signals.rises |= fault.ramp_s.is_some() || fault.kind == FaultKind::Drift;
         let value = |parameter: usize, c: usize| self.values::<L>(parameter, c);
         let one = [1.0; MAX_WIDTH];
+        let held = |slot_s, share| self.bursts(&|_| one, slot_s, share);
         match fault.kind {
             FaultKind::LossOfEffectiveness => signals.losses.push(self.switches(&|c| value(0, c))),
             FaultKind::Float => signals.losses.push(self.switches(&|_| one)),
@@ -87,57 +88,56 @@ impl FaultLanes<'_> {
                 let waves = self.waves(&|c| value(1, c).map(f64::recip), 3, Some(2));
                 signals.squares.push(waves);
             }
-            FaultKind::Delay | FaultKind::Replay => {
-                let (records, switches) = (fault.kind == FaultKind::Delay, self.switches(&|_| one));
-                let lengths = std::array::from_fn(|c| self.ring_steps::<L>(c));
-                if measured {
-                    signals
-                        .sensor_rings
-                        .push(DelayLine::new(records, switches, lengths));
-                } else {
-                    signals
-                        .command_rings
-                        .push(DelayLine::new(records, switches, lengths));
-                }
-            }
+            FaultKind::Delay | FaultKind::Replay => self.add_delay_line(signals),
             FaultKind::Scale => signals.scales.push(self.switches(&|c| value(0, c))),
-            FaultKind::Noise => signals.noises.push(Noise {
-                entry: self.entry(),
-                members: self.members(),
-                switch: self.switches(&|c| value(0, c)),
-                samples: [[L::number(0.0); 4]; NC],
-            }),
+            FaultKind::Noise => signals.noises.push(self.noise()),
             FaultKind::Outlier => {
                 signals
                     .outliers
                     .push(self.bursts(&|c| value(0, c), None, Some(1)))
             }
-            FaultKind::Freeze => signals.sensor_holds.push(self.bursts(&|_| one, None, None)),
-            FaultKind::Dropout => {
-                signals
-                    .sensor_holds
-                    .push(self.bursts(&|_| one, Some(0), Some(1)))
-            }
+            FaultKind::Freeze => signals.sensor_holds.push(held(None, None)),
+            FaultKind::Dropout => signals.sensor_holds.push(held(Some(0), Some(1))),
             FaultKind::DenialOfService if measured => {
-                signals
-                    .sensor_holds
-                    .push(self.bursts(&|_| one, Some(0), Some(1)));
+                signals.sensor_holds.push(held(Some(0), Some(1)));
             }
-            FaultKind::DenialOfService => {
-                signals
-                    .command_holds
-                    .push(self.bursts(&|_| one, Some(0), Some(1)));
-            }
+            FaultKind::DenialOfService => signals.command_holds.push(held(Some(0), Some(1))),
             FaultKind::Interference => signals.leaks.push(self.switches(&|c| value(0, c))),
             FaultKind::Mass | FaultKind::Inertia | FaultKind::CenterOfMass | FaultKind::Payload => {
-                let changed = |c: usize| self.plant_change::<L>(c);
-                signals
-                    .inertias
-                    .push(self.switches(&|c| changed(c).map(|change| change.inertia)));
-                signals
-                    .weights
-                    .push(self.switches(&|c| changed(c).map(|change| change.force)));
+                self.add_plant_change(signals);
             }
+        }
+    }
+
+    /// A delay or a replay of what is commanded or measured.
+    fn add_delay_line<L: Lane, const NC: usize>(&self, signals: &mut ExogenousInputs<L, NC>) {
+        let records = self.fault.kind == FaultKind::Delay;
+        let switches = self.switches(&|_| [1.0; MAX_WIDTH]);
+        let lengths = std::array::from_fn(|c| self.ring_steps::<L>(c));
+        if self.fault.link == Link::Measurement {
+            let line = DelayLine::new(records, switches, lengths);
+            signals.sensor_rings.push(line);
+        } else {
+            let line = DelayLine::new(records, switches, lengths);
+            signals.command_rings.push(line);
+        }
+    }
+
+    /// A changed mass: by what share the inertia grows, and which force comes with it.
+    fn add_plant_change<L: Lane, const NC: usize>(&self, signals: &mut ExogenousInputs<L, NC>) {
+        let changed = |c: usize| self.plant_change::<L>(c);
+        let inertias = self.switches(&|c| changed(c).map(|change| change.inertia));
+        signals.inertias.push(inertias);
+        let weights = self.switches(&|c| changed(c).map(|change| change.force));
+        signals.weights.push(weights);
+    }
+
+    fn noise<L: Lane, const NC: usize>(&self) -> Noise<L, NC> {
+        Noise {
+            entry: self.entry(),
+            members: self.members(),
+            switch: self.switches(&|c| self.values::<L>(0, c)),
+            samples: [[L::number(0.0); 4]; NC],
         }
     }
 

@@ -271,6 +271,7 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         reference
     }
 
+    // In one piece, as `thrust_respond` of shaders/plant_uav.wgsl: the two are compared statement by statement.
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 6>, extra: &[L; 4]) -> Response<L, 6, 4> {
         let zero = L::number(0.0);
