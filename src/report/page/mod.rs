@@ -6,3 +6,4 @@ pub(crate) mod html;
 pub(crate) mod markdown;
 pub(crate) mod plot;
 pub(crate) mod plot_grid;
+mod ticks;

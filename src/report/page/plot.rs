@@ -1,13 +1,13 @@
 //! A pair of axes with marks, as SVG. Colours are CSS variables, so that one drawing serves light and dark.
 
+use super::ticks::{format_of, longest_label};
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::annotations::{ReferenceLine, ShadedRegion};
-use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::layout::Layout;
 use kuva::render::plots::Plot as Layer;
 use kuva::render::render::render_multiple;
 use kuva::render::theme::Theme;
-use std::sync::Arc;
 
 /// Width and height of a panel, px: one is as wide as a phone, and three stand side by side on a screen.
 pub(crate) const SIZE: (f64, f64) = (380.0, 250.0);
@@ -114,7 +114,7 @@ impl Plot {
             .iter()
             .flat_map(|mark| self.plots(mark))
             .collect();
-        let y_labels = ticks(y_range, self.y.logarithmic);
+        let y_labels = longest_label(y_range, self.y.logarithmic);
         let margin = y_labels * LETTER + 44.0;
         let mut layout = Layout::new(x_range, y_range)
             .with_width(width)
@@ -333,77 +333,6 @@ fn padded((low, high): (f64, f64), axis: &Axis) -> (f64, f64) {
     (low - room, high + room)
 }
 
-/// How the ticks of an axis are written: with as many digits as tell them apart.
-fn format_of(range: (f64, f64), logarithmic: bool) -> TickFormat {
-    TickFormat::Custom(Arc::new(move |value| tick(value, range, logarithmic)))
-}
-
-fn tick(value: f64, (low, high): (f64, f64), logarithmic: bool) -> String {
-    let size = value.abs();
-    if logarithmic && !is_labelled(value, (low, high)) {
-        return String::new();
-    }
-    if size != 0.0
-        && !(1e-3..1e5).contains(&size)
-        && (logarithmic || high - low >= 1e5 || high - low < 1e-3)
-    {
-        return format!("{value:.1e}").replace(".0e", "e");
-    }
-    let digits = if logarithmic {
-        -size.log10().floor()
-    } else {
-        // One more than the distance of the ticks has, for those at quarters; zeros at the end are cut.
-        (-((high - low) / 4.0).log10()).ceil() + 1.0
-    };
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to a few digits"
-    )]
-    let digits = digits.clamp(0.0, 8.0) as usize;
-    let text = format!("{value:.digits$}");
-    let short = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &*text,
-    };
-    match short {
-        "-0" => "0".to_string(),
-        short => short.to_string(),
-    }
-}
-
-/// Whether a tick of a logarithmic axis has a label: over many decades only every so many, and nothing between them.
-fn is_labelled(value: f64, (low, high): (f64, f64)) -> bool {
-    let decades = (high / low).log10();
-    let decade = value.log10().round();
-    let every = (decades / 6.0).ceil().max(1.0);
-    let between = (value.log10() - decade).abs() > 1e-6;
-    !(between && decades > 3.0) && (between || decade.rem_euclid(every) == 0.0)
-}
-
-/// Letters of the longest label of an axis.
-fn ticks((low, high): (f64, f64), logarithmic: bool) -> f64 {
-    let candidates: Vec<f64> = if logarithmic {
-        let (first, last) = (low.log10().floor(), high.log10().ceil());
-        let decades = (0..64).map(|k| first + f64::from(k));
-        let decades = decades.take_while(|decade| *decade <= last);
-        decades
-            .flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powf(decade)))
-            .collect()
-    } else {
-        let step = (high - low) / 5.0;
-        let digits = 10f64.powf(step.log10().floor());
-        (0..=5)
-            .map(|k| ((low + f64::from(k) * step) / digits).round() * digits)
-            .collect()
-    };
-    let labels = candidates
-        .into_iter()
-        .map(|value| tick(value, (low, high), logarithmic).len());
-    let longest = labels.max().unwrap_or(1);
-    u32::try_from(longest.min(9)).map_or(9.0, f64::from)
-}
-
 fn theme() -> Theme {
     Theme {
         background: "none".into(),
@@ -427,26 +356,6 @@ pub(crate) fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_have_the_digits_that_tell_them_apart() {
-        let linear = |value, range| tick(value, range, false);
-        assert_eq!(linear(0.25, (0.0, 1.0)), "0.25");
-        assert_eq!(linear(0.2, (0.0, 0.5)), "0.2");
-        assert_eq!(linear(20.0, (0.0, 20.0)), "20");
-        assert_eq!(linear(2.000_005, (2.0, 2.000_02)), "2.000005");
-        assert_eq!(linear(2.5, (0.0, 10.0)), "2.5");
-        assert_eq!(linear(-0.0, (-1.0, 1.0)), "0");
-        assert_eq!(linear(3e6, (0.0, 1e7)), "3e6");
-        assert_eq!(linear(2e-5, (0.0, 1e-4)), "2e-5");
-        let logarithmic = |value, range| tick(value, range, true);
-        assert_eq!(logarithmic(0.05, (0.01, 1.0)), "0.05");
-        assert_eq!(logarithmic(1e-5, (1e-6, 1e-4)), "1e-5");
-        // Over many decades only some of them have labels.
-        let labelled = (-4..=8).filter(|k| !logarithmic(10f64.powi(*k), (1e-4, 1e8)).is_empty());
-        assert_eq!(labelled.count(), 7);
-        assert_eq!(logarithmic(0.05, (1e-4, 1e8)), "");
-    }
 
     #[test]
     fn thinning_keeps_every_peak_and_both_ends() {
