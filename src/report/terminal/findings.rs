@@ -12,7 +12,9 @@ use crate::report::notes::caveats;
 use crate::results::sensitivity::SensitivityResult;
 use crate::results::{FailureRate, Measured, PairedComparison, Ratio};
 use crate::run::Findings;
+use crate::run::manifest::Manifest;
 use crate::run::replay::command;
+use crate::simulation::Times;
 use crate::simulation::cross_check::CrossCheck;
 use crate::statistics::Interval;
 use crate::util::format::{digits, rounded_up};
@@ -28,8 +30,25 @@ const SURE: f64 = 0.05;
 
 /// The findings of a run at a glance.
 pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
+    let mut text = flown(campaign, &findings.manifest);
+    text.push_str(&failure_rates(campaign, findings));
+    for caveat in caveats(campaign, &findings.manifest) {
+        line(&mut text, &caveat);
+    }
+    text.push_str(&strata(campaign, findings));
+    text.push_str(&rms_errors(campaign, findings));
+    text.push_str(&pairs(campaign, findings));
+    text.push_str(&what_matters(campaign, findings));
+    text.push_str(&worst(findings, out));
+    text.push_str(&in_short(campaign, findings));
+    text.push_str(&requirements(&findings.manifest.requirements));
+    text.push_str(&written(findings.manifest.times, out));
+    text
+}
+
+/// What was flown on what, and the cross-check.
+fn flown(campaign: &Campaign, manifest: &Manifest) -> String {
     let mut text = String::new();
-    let manifest = &findings.manifest;
     let precision = format!("{:?}", manifest.precision).to_lowercase();
     let engines = manifest.legs.iter().map(|leg| leg.engine.to_string());
     let engines: Vec<String> = engines.collect();
@@ -53,6 +72,12 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
         line(&mut text, &cross_check(check, campaign.controllers.len()));
         text.push_str(&attenuation::groups(&check.attenuation));
     }
+    text
+}
+
+/// How often each controller failed.
+fn failure_rates(campaign: &Campaign, findings: &Findings) -> String {
+    let mut text = String::new();
     line(
         &mut text,
         &match campaign.team {
@@ -102,10 +127,12 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
             ),
         );
     }
-    for caveat in caveats(campaign, manifest) {
-        line(&mut text, &caveat);
-    }
-    text.push_str(&strata(campaign, findings));
+    text
+}
+
+/// How large the errors of each controller were.
+fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
+    let mut text = String::new();
     line(
         &mut text,
         &format!(
@@ -147,6 +174,12 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
         }
         line(&mut text, cells.trim_end());
     }
+    text
+}
+
+/// How each pair of controllers compares.
+fn pairs(campaign: &Campaign, findings: &Findings) -> String {
+    let mut text = String::new();
     if !findings.comparisons.is_empty() {
         line(
             &mut text,
@@ -199,11 +232,12 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
             );
         }
     }
-    text.push_str(&what_matters(campaign, findings));
-    text.push_str(&worst(findings, out));
-    text.push_str(&in_short(campaign, findings));
-    text.push_str(&requirements(&manifest.requirements));
-    let times = manifest.times;
+    text
+}
+
+/// Where the files are, and how long it all took.
+fn written(times: Times, out: &Path) -> String {
+    let mut text = String::new();
     line(
         &mut text,
         &format!(

@@ -55,6 +55,7 @@ pub fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
     text
 }
 
+/// The gains of a channel group, and what is known about them.
 fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&controllers::Findings>) {
     let numbers = |values: &[f64]| {
         values
@@ -74,9 +75,14 @@ fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&control
             ),
         );
     }
-    let Some(findings) = findings else {
-        return;
-    };
+    if let Some(findings) = findings {
+        analysis(text, findings);
+        proof(text, findings);
+    }
+}
+
+/// How the closed loop behaves.
+fn analysis(text: &mut String, findings: &controllers::Findings) {
     let poles = |poles: &[[f64; 2]]| {
         let pole = |[re, im]: &[f64; 2]| {
             if *im == 0.0 {
@@ -112,6 +118,10 @@ fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&control
             margins.crossover_rad_s
         ),
     );
+}
+
+/// What is certified, and what was checked for it.
+fn proof(text: &mut String, findings: &controllers::Findings) {
     if let Some(certificate) = &findings.certificate {
         line(
             text,

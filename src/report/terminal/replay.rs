@@ -45,24 +45,7 @@ pub fn replay(
         ),
     );
     for (agent, outcome) in replay.outcomes.iter().enumerate() {
-        let ending = match status(campaign, outcome) {
-            Status::Ok => String::new(),
-            failed => {
-                let limit = match (failed, outcome.failed_step) {
-                    (Status::Exceeded, Some(_)) => " max_error",
-                    (Status::Exceeded, None) => " max_rmse",
-                    _ => "",
-                };
-                let time = failed_at_s(replay, outcome);
-                // What diverges has failed before it left the numbers, if there is a limit.
-                let first = match failed {
-                    Status::Diverged => ", failed",
-                    Status::Ok | Status::Exceeded => "",
-                };
-                let at = time.map_or(String::new(), |time| format!("{first} at {time:.3} s"));
-                format!("  {}{limit}{at}", bad(failed.word()))
-            }
-        };
+        let ending = ending(replay, outcome);
         line(&mut text, &format!("  agent {agent}{ending}"));
         for (channel, (name, metrics)) in names.iter().zip(&outcome.channels).enumerate() {
             line(
@@ -96,6 +79,28 @@ pub fn replay(
         ),
     );
     text
+}
+
+/// How an agent ended, if it failed, and when.
+fn ending(replay: &Replay, outcome: &AgentOutcome) -> String {
+    match status(&replay.campaign, outcome) {
+        Status::Ok => String::new(),
+        failed => {
+            let limit = match (failed, outcome.failed_step) {
+                (Status::Exceeded, Some(_)) => " max_error",
+                (Status::Exceeded, None) => " max_rmse",
+                _ => "",
+            };
+            let time = failed_at_s(replay, outcome);
+            // What diverges has failed before it left the numbers, if there is a limit.
+            let first = match failed {
+                Status::Diverged => ", failed",
+                Status::Ok | Status::Exceeded => "",
+            };
+            let at = time.map_or(String::new(), |time| format!("{first} at {time:.3} s"));
+            format!("  {}{limit}{at}", bad(failed.word()))
+        }
+    }
 }
 
 /// When an agent broke max_error or left the numbers, s.
