@@ -1,9 +1,9 @@
 //! Checks of single values and of the shapes that all tables share.
 
-use super::RandomQuantity;
 use super::distribution::Distribution;
 use super::error::{CampaignError, line_of};
 use super::file::*;
+use super::quantity::RandomQuantity;
 use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,6 +1,10 @@
 //! What a campaign may do, but its writer has probably not meant: said before the flight, forbidden by nothing.
 
-use super::{ALL, Campaign, Distribution, Fault, RandomQuantity, Requirement};
+use super::distribution::Distribution;
+use super::plan::ALL;
+use super::quantity::RandomQuantity;
+use super::signals::Fault;
+use super::validated::{Campaign, Requirement};
 use crate::reference::{AgentWalk, Reference, WaypointPath};
 use crate::statistics::LEVEL;
 use crate::statistics::{runs_needed, sequential_runs_needed};

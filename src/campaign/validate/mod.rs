@@ -2,24 +2,32 @@
 //! later.
 
 mod agent;
+mod disturbance;
+mod fault;
+mod fault_channels;
 mod plan;
 mod reference;
 mod sampling;
-mod signals;
 mod synthesis;
+mod timing;
 
 use super::check::{Bounds, Check, Parameter};
 use super::error::CampaignError;
 use super::file::*;
-use super::{Campaign, Control, Initial, Time, Verdict};
+use super::quantity::RandomQuantity;
+use super::signals::{Disturbance, Fault};
+use super::time::Time;
+use super::validated::{Campaign, Control, Initial, Verdict};
 use crate::agent::ActuationKind;
 use crate::agent::Agent;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
 /// Memory that the reference tables of a campaign may take, bytes.
 const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
+
 /// Checks a file as written; `robot` is the text of the robot's file, if it is not to be read.
 pub(super) fn validate(
     file: CampaignFile,
@@ -33,24 +41,9 @@ pub(super) fn validate(
         channels: Vec::new(),
     };
     check.name("name", &file.name)?;
-    if file.episodes == 0 {
-        return Err(check.invalid(
-            "episodes",
-            0,
-            "at least one episode must run",
-            "give a positive number",
-        ));
-    }
+    check.episodes(file.episodes)?;
     let time = check.time(&file.time)?;
-    let team = file.agent.team.unwrap_or(1) as usize;
-    if !(1..=64).contains(&team) {
-        return Err(check.invalid(
-            "agent.team",
-            team,
-            "a team has 1 to 64 agents",
-            "give the agents of one episode",
-        ));
-    }
+    let team = check.team(&file.agent)?;
     let agent = check.agent(&file.agent, robot)?;
     check.channels = agent.channels();
     check.table_fits(&file.time, time, team, &agent)?;
@@ -84,39 +77,22 @@ pub(super) fn validate(
         synthesis,
         mass_scale: scale("agent.mass_scale", &file.agent.mass_scale)?,
         inertia_scale: scale("agent.inertia_scale", &file.agent.inertia_scale)?,
-        kappa: check.of_agents(
-            "coupling.kappa",
-            file.coupling.as_ref().map(|coupling| &coupling.kappa),
-            Some(0.0),
-            SamplingScope::Episode,
-            Bounds::Any,
-            team,
-        )?,
+        kappa: check.kappa(file.coupling.as_ref(), team)?,
         coordinates: file
             .coupling
             .as_ref()
             .and_then(|coupling| coupling.coordinates)
             .unwrap_or(CouplingCoordinates::Absolute),
-        control: check.control(&file.control.unwrap_or_default(), team, time)?,
+        control: check.control(
+            file.control.as_ref().unwrap_or(&ControlFile::default()),
+            team,
+            time,
+        )?,
         initial: check.initial(file.initial.as_ref(), team)?,
-        disturbances: file
-            .disturbance
-            .iter()
-            .enumerate()
-            .map(|(index, disturbance)| {
-                let walks = file.reference.kind == ReferenceKind::Walk;
-                check.disturbance(index, disturbance, team, time, &agent, walks)
-            })
-            .collect::<Result<_, _>>()?,
+        disturbances: check.disturbances(&file, team, time, &agent)?,
         strata,
         sampling,
-        faults: file
-            .fault
-            .iter()
-            .zip(fault_names)
-            .enumerate()
-            .map(|(index, (fault, name))| check.fault(index, fault, name, team, time, &agent))
-            .collect::<Result<_, _>>()?,
+        faults: check.faults(&file.fault, fault_names, team, time, &agent)?,
         verdict: check.verdict(file.verdict.as_ref().unwrap_or(&VerdictFile::default()))?,
         channels: check.channels,
         agent,
@@ -136,6 +112,76 @@ impl Check<'_> {
             ));
         }
         Ok(())
+    }
+
+    fn episodes(&self, episodes: u32) -> Result<(), CampaignError> {
+        if episodes == 0 {
+            return Err(self.invalid(
+                "episodes",
+                0,
+                "at least one episode must run",
+                "give a positive number",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The number of agents.
+    fn team(&self, file: &AgentFile) -> Result<usize, CampaignError> {
+        let team = file.team.unwrap_or(1) as usize;
+        if !(1..=64).contains(&team) {
+            return Err(self.invalid(
+                "agent.team",
+                team,
+                "a team has 1 to 64 agents",
+                "give the agents of one episode",
+            ));
+        }
+        Ok(team)
+    }
+
+    /// The strength of the coupling.
+    fn kappa(
+        &self,
+        file: Option<&CouplingFile>,
+        team: usize,
+    ) -> Result<RandomQuantity, CampaignError> {
+        self.of_agents(
+            "coupling.kappa",
+            file.map(|coupling| &coupling.kappa),
+            Some(0.0),
+            SamplingScope::Episode,
+            Bounds::Any,
+            team,
+        )
+    }
+
+    fn disturbances(
+        &self,
+        file: &CampaignFile,
+        team: usize,
+        time: Time,
+        agent: &Agent,
+    ) -> Result<Vec<Disturbance>, CampaignError> {
+        let walks = file.reference.kind == ReferenceKind::Walk;
+        let disturbances = file.disturbance.iter().enumerate();
+        disturbances
+            .map(|(index, own)| self.disturbance(index, own, team, time, agent, walks))
+            .collect()
+    }
+
+    fn faults(
+        &self,
+        files: &[FaultFile],
+        names: Vec<Arc<str>>,
+        team: usize,
+        time: Time,
+        agent: &Agent,
+    ) -> Result<Vec<Fault>, CampaignError> {
+        let faults = files.iter().zip(names).enumerate();
+        faults
+            .map(|(index, (fault, name))| self.fault(index, fault, name, team, time, agent))
+            .collect()
     }
 
     fn time(&self, file: &TimeFile) -> Result<Time, CampaignError> {

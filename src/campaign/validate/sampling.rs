@@ -1,10 +1,10 @@
 //! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
 
-use crate::campaign::Requirement;
 use crate::campaign::check::{Bounds, Check};
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::plan::{ALL, Goal, Sampling, Stop, Strata};
+use crate::campaign::validated::Requirement;
 use crate::random::{MOST_ENTRIES, Method, allows};
 use crate::util::suggest::did_you_mean;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use crate::agent::ChannelRole;
 use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::{FTC, GainSource, NamedGains, PID, PID_TUNED};
+use crate::campaign::validated::{FTC, GainSource, NamedGains, PID, PID_TUNED};
 use crate::synthesis::{ChannelDesign, Preset, SmoothingRule, SynthesisError};
 use crate::util::suggest::did_you_mean;
 use std::path::Path;

@@ -1,0 +1,107 @@
+//! From the text of a campaign file to a campaign.
+
+use super::check::Check;
+use super::error::{CampaignError, syntax};
+use super::file::CampaignFile;
+use super::validate::validate;
+use super::validated::Campaign;
+use std::path::Path;
+
+impl Campaign {
+    /// Reads and checks a campaign file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it, with file, key, value, limit and remedy.
+    pub fn load(path: &Path) -> Result<Self, CampaignError> {
+        let text = std::fs::read_to_string(path).map_err(|source| CampaignError::Read {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        let campaign = Self::parse(&text, path)?;
+        campaign.require_files()?;
+        Ok(campaign)
+    }
+
+    /// Refuses a campaign whose gains files are not there. A run's campaign is parsed again without this: its gains are in
+    /// the run's own directory.
+    fn require_files(&self) -> Result<(), CampaignError> {
+        let own = self
+            .synthesis
+            .gains
+            .iter()
+            .map(|path| ("synthesis.gains".to_string(), path));
+        let named = &self.synthesis.named;
+        let of_named = named.iter().map(|named| {
+            (
+                format!("synthesis.named.{}.gains", named.name),
+                &named.gains,
+            )
+        });
+        let check = Check {
+            path: &self.path,
+            text: &self.text,
+            channels: Vec::new(),
+        };
+        match own.chain(of_named).find(|(_, path)| !path.is_file()) {
+            Some((key, path)) => {
+                let limit = if path.is_dir() {
+                    "a directory, not a file"
+                } else {
+                    "no such file"
+                };
+                // As it was written: beside the campaign.
+                let folder = self.path.parent().unwrap_or(Path::new(""));
+                let name = path.strip_prefix(folder).unwrap_or(path);
+                Err(check.invalid(
+                    key,
+                    format!("{:?}", name.display().to_string()),
+                    limit,
+                    "name a gains.json, relative to the campaign",
+                ))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Checks the text of a campaign file; `path` is for messages and for the files that it names.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
+        Self::parse_with_robot(text, path, None)
+    }
+
+    /// The same with the text of the robot's file, where that is at hand and the file may not be there.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse_with_robot(
+        text: &str,
+        path: &Path,
+        robot: Option<&str>,
+    ) -> Result<Self, CampaignError> {
+        let file = toml::from_str(text).map_err(|error| syntax(path, &error))?;
+        validate(file, text, path, robot)
+    }
+
+    /// Flies another number of episodes than the file's.
+    ///
+    /// # Errors
+    /// If the sampling design cannot divide so many into equal replicates.
+    pub fn set_episodes(&mut self, episodes: u32) -> Result<(), CampaignError> {
+        let check = Check {
+            path: &self.path,
+            text: &self.text,
+            channels: Vec::new(),
+        };
+        check.divides(self.sampling, episodes)?;
+        self.episodes = episodes;
+        Ok(())
+    }
+
+    /// The JSON Schema of the campaign file.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(CampaignFile).to_value()
+    }
+}

@@ -1,0 +1,29 @@
+//! A random quantity: its distributions, and who shares a draw.
+
+use super::distribution::Distribution;
+use super::file::SamplingScope;
+
+/// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RandomQuantity {
+    /// Who shares a draw.
+    pub per: SamplingScope,
+    /// Channels per agent (1 for a quantity of the agent).
+    pub channels: usize,
+    /// Distribution of each agent and channel, agent by agent.
+    pub distributions: Vec<Distribution>,
+}
+
+impl RandomQuantity {
+    /// The distribution of an agent's channel.
+    #[must_use]
+    pub fn of(&self, agent: usize, channel: usize) -> &Distribution {
+        &self.distributions[agent * self.channels + channel]
+    }
+
+    /// Whether it is zero in every episode.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.distributions.iter().all(|d| d.support() == (0.0, 0.0))
+    }
+}
