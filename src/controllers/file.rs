@@ -1,10 +1,11 @@
 //! gains.json: what a run writes, and what a campaign may fly instead of a synthesis.
 
-use super::{ChannelController, Findings, GainSet, GainsError, SimulatedController, integrable};
+use super::error::GainsError;
+use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
 use crate::agent::ChannelGroup;
 use crate::agent::ChannelRole;
 use crate::campaign::Campaign;
-use crate::synthesis::{ChannelDesign, ControllerGains, verify};
+use crate::synthesis::{ChannelDesign, ControllerGains, SynthesisError, verify};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -96,6 +97,34 @@ fn json(value: &impl Serialize) -> serde_json::Value {
     serde_json::to_value(value).unwrap_or_default()
 }
 
+/// Reads a gains.json.
+fn read(path: &Path) -> Result<GainsFile, GainsError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| broken(path, format!("cannot be read ({error}); name a gains.json")))?;
+    let file: GainsFile = serde_json::from_str(&text).map_err(|error| {
+        broken(
+            path,
+            format!("{error}; write it as the gains.json of a run"),
+        )
+    })?;
+    if file.format != FORMAT {
+        let reason = format!(
+            "format = {}: this program reads format {FORMAT}; run the campaign that made the file again",
+            file.format
+        );
+        return Err(broken(path, reason));
+    }
+    Ok(file)
+}
+
+/// A file that cannot be used.
+fn broken(path: &Path, reason: String) -> GainsError {
+    GainsError::File {
+        path: path.to_path_buf(),
+        reason,
+    }
+}
+
 /// A controller from a file; its gains are verified if `check`.
 pub(super) fn controller(
     campaign: &Campaign,
@@ -104,35 +133,24 @@ pub(super) fn controller(
     controller: &str,
     check: bool,
 ) -> Result<SimulatedController, GainsError> {
-    let broken = |reason: String| GainsError::File {
-        path: path.to_path_buf(),
-        reason,
-    };
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| broken(format!("cannot be read ({error}); name a gains.json")))?;
-    let mut file: GainsFile = serde_json::from_str(&text)
-        .map_err(|error| broken(format!("{error}; write it as the gains.json of a run")))?;
-    if file.format != FORMAT {
-        return Err(broken(format!(
-            "format = {}: this program reads format {FORMAT}; run the campaign that made the file again",
-            file.format
-        )));
-    }
+    let mut file = read(path)?;
     let Some(mut found) = file.controllers.remove(controller) else {
         let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
-        return Err(broken(format!(
+        let reason = format!(
             "controllers.{controller}: absent, the file has {}; add it or name one of these",
             known.join(", ")
-        )));
+        );
+        return Err(broken(path, reason));
     };
     let written = found.findings.take();
     let mut of_group = |(group, design): (ChannelGroup, &ChannelDesign)| {
         let role = group.role.name();
         let gains = found.of(group.role).take().ok_or_else(|| {
-            broken(format!(
+            let reason = format!(
                 "controllers.{controller}.{role}: absent; add it, or name gains that were made for {}",
                 campaign.agent.plural()
-            ))
+            );
+            broken(path, reason)
         })?;
         let refused = |source| GainsError::Refused {
             path: path.to_path_buf(),
@@ -142,13 +160,7 @@ pub(super) fn controller(
         };
         let loop_gains = integrable(design, &gains).map_err(refused)?;
         let findings = if check {
-            let verified = verify(design, &gains).map_err(refused)?;
-            Some(Findings {
-                analysis: verified.analysis,
-                certificate: verified.certificate,
-                checks: verified.checks,
-                solver: Vec::new(),
-            })
+            Some(verified(design, &gains).map_err(refused)?)
         } else {
             // A run that wrote them in another form is flown all the same.
             let written = written.as_ref().and_then(|findings| findings.get(role));
@@ -171,14 +183,24 @@ pub(super) fn controller(
         .any(|pair| states(&pair[0]) != states(&pair[1]))
     {
         let remedy = "give both fault estimates, or neither";
-        return Err(broken(format!(
-            "controllers.{controller}: the channel groups differ in kind; {remedy}"
-        )));
+        let reason =
+            format!("controllers.{controller}: the channel groups differ in kind; {remedy}");
+        return Err(broken(path, reason));
     }
-    let source = format!("{} ({controller})", path.display());
     Ok(SimulatedController {
         name: name.to_string(),
-        source,
+        source: format!("{} ({controller})", path.display()),
         groups,
+    })
+}
+
+/// What the verification of gains from a file finds.
+fn verified(design: &ChannelDesign, gains: &ControllerGains) -> Result<Findings, SynthesisError> {
+    let verified = verify(design, gains)?;
+    Ok(Findings {
+        analysis: verified.analysis,
+        certificate: verified.certificate,
+        checks: verified.checks,
+        solver: Vec::new(),
     })
 }
