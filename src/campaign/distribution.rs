@@ -1,7 +1,7 @@
 //! Distributions of a campaign's random quantities, sampled by inversion: one uniform number in, one value out, so that
 //! a quantity's draw has one address whatever its distribution.
 
-use super::file::DistributionFile;
+use super::file::{DistributionFile, TruncatedNormalFile};
 use serde::Serialize;
 use statrs::function::erf::{erf, erfc_inv};
 use std::f64::consts::SQRT_2;
@@ -55,27 +55,7 @@ pub enum Distribution {
 
 impl Distribution {
     /// The distribution that a file describes; what is wrong and what to do if it describes none.
-    pub(super) fn read(file: &DistributionFile) -> Result<Self, [&'static str; 2]> {
-        let range = |[low, high]: [f64; 2]| {
-            if low <= high && (high - low).is_finite() {
-                Ok((low, high))
-            } else {
-                Err([
-                    "a range goes from a low to a high finite number",
-                    "swap or correct its ends",
-                ])
-            }
-        };
-        let mean_and_spread = |mean: f64, std: f64| {
-            if mean.is_finite() && std.is_finite() && std >= 0.0 {
-                Ok((mean, std))
-            } else {
-                Err([
-                    "a mean is finite, a standard deviation is finite and not negative",
-                    "correct them",
-                ])
-            }
-        };
+    pub(super) fn read(file: &DistributionFile) -> Result<Self, Refusal> {
         if file.weights.is_some() && file.choice.is_none() {
             return Err(["weights belong to a choice", "add `choice` or remove them"]);
         }
@@ -93,39 +73,12 @@ impl Distribution {
                 let (low, high) = range(ends.0)?;
                 Ok(Self::Uniform { low, high })
             }
-            (None, Some(ends), None, None, None) => {
-                let (low, high) = range(ends.0)?;
-                if low > 0.0 {
-                    Ok(Self::LogUniform { low, high })
-                } else {
-                    Err([
-                        "a logarithm needs positive ends",
-                        "use uniform or a positive range",
-                    ])
-                }
-            }
+            (None, Some(ends), None, None, None) => log_uniform_on(ends.0),
             (None, None, Some(normal), None, None) => {
                 let (mean, std) = mean_and_spread(normal.mean, normal.std)?;
                 Ok(Self::Normal { mean, std })
             }
-            (None, None, None, Some(normal), None) => {
-                let (low, high) = range([normal.low, normal.high])?;
-                let (mean, std) = mean_and_spread(normal.mean, normal.std)?;
-                // Beyond six deviations the tail holds too few doubles to draw from.
-                if std > 0.0 && low <= mean + 6.0 * std && high >= mean - 6.0 * std {
-                    Ok(Self::TruncatedNormal {
-                        mean,
-                        std,
-                        low,
-                        high,
-                    })
-                } else {
-                    Err([
-                        "the interval must meet the six standard deviations around the mean",
-                        "widen the interval or the deviation",
-                    ])
-                }
-            }
+            (None, None, None, Some(normal), None) => truncated(normal),
             (None, None, None, None, Some(values)) => choose(values, weights.as_deref()),
             (None, None, None, None, None) => Err([
                 "a distribution has one of uniform, log_uniform, normal, truncated_normal, choice",
@@ -198,7 +151,63 @@ impl Distribution {
     }
 }
 
-fn choose(values: &[f64], weights: Option<&[f64]>) -> Result<Distribution, [&'static str; 2]> {
+/// What is wrong with a distribution, and what to do.
+type Refusal = [&'static str; 2];
+
+fn range([low, high]: [f64; 2]) -> Result<(f64, f64), Refusal> {
+    if low <= high && (high - low).is_finite() {
+        Ok((low, high))
+    } else {
+        Err([
+            "a range goes from a low to a high finite number",
+            "swap or correct its ends",
+        ])
+    }
+}
+
+fn mean_and_spread(mean: f64, std: f64) -> Result<(f64, f64), Refusal> {
+    if mean.is_finite() && std.is_finite() && std >= 0.0 {
+        Ok((mean, std))
+    } else {
+        Err([
+            "a mean is finite, a standard deviation is finite and not negative",
+            "correct them",
+        ])
+    }
+}
+
+fn log_uniform_on(ends: [f64; 2]) -> Result<Distribution, Refusal> {
+    let (low, high) = range(ends)?;
+    if low > 0.0 {
+        Ok(Distribution::LogUniform { low, high })
+    } else {
+        Err([
+            "a logarithm needs positive ends",
+            "use uniform or a positive range",
+        ])
+    }
+}
+
+fn truncated(normal: &TruncatedNormalFile) -> Result<Distribution, Refusal> {
+    let (low, high) = range([normal.low, normal.high])?;
+    let (mean, std) = mean_and_spread(normal.mean, normal.std)?;
+    // Beyond six deviations the tail holds too few doubles to draw from.
+    if std > 0.0 && low <= mean + 6.0 * std && high >= mean - 6.0 * std {
+        Ok(Distribution::TruncatedNormal {
+            mean,
+            std,
+            low,
+            high,
+        })
+    } else {
+        Err([
+            "the interval must meet the six standard deviations around the mean",
+            "widen the interval or the deviation",
+        ])
+    }
+}
+
+fn choose(values: &[f64], weights: Option<&[f64]>) -> Result<Distribution, Refusal> {
     let weights = weights.map_or_else(|| vec![1.0; values.len()], <[f64]>::to_vec);
     let sum: f64 = weights.iter().sum();
     if !values.iter().all(|value| value.is_finite()) {

@@ -4,6 +4,8 @@ use super::check::{Bounds, Parameter, of_agent, required};
 use super::file::{DisturbanceKind, FaultKind, FaultTarget, SamplingScope};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 
+const AMPLITUDE: Parameter = required("amplitude", Bounds::Any);
+const FREQUENCY: Parameter = required("frequency_rad_s", Bounds::NonNegative);
 const PHASE: Parameter = Parameter {
     name: "phase_rad",
     default: Some(0.0),
@@ -42,16 +44,8 @@ impl DisturbanceKind {
     #[must_use]
     pub fn parameters(self) -> &'static [Parameter] {
         match self {
-            Self::Sine => {
-                const {
-                    &[
-                        required("amplitude", Bounds::Any),
-                        required("frequency_rad_s", Bounds::NonNegative),
-                        PHASE,
-                    ]
-                }
-            }
-            Self::Constant => const { &[required("amplitude", Bounds::Any)] },
+            Self::Sine => &[AMPLITUDE, FREQUENCY, PHASE],
+            Self::Constant => &[AMPLITUDE],
             Self::Gust1Cosine => {
                 const {
                     &[
@@ -96,6 +90,19 @@ impl DisturbanceKind {
 }
 
 const MAGNITUDE: Parameter = required("magnitude", Bounds::Any);
+/// Share of the command that does not reach the plant.
+const LOST_SHARE: Parameter = required("magnitude", Bounds::Share);
+/// Share by which a property of the plant grows; less than all of it may be lost.
+const GROWTH: Parameter = of_agent("magnitude", Bounds::AtLeast(-0.9));
+const PAYLOAD_MASS: Parameter = of_agent("mass_kg", Bounds::NonNegative);
+const LARGEST_RATE: Parameter = required("rate", Bounds::NonNegative);
+const DRIFT_RATE: Parameter = required("rate", Bounds::Any);
+const STD: Parameter = required("std", Bounds::NonNegative);
+const DELAY: Parameter = of_agent("delay_s", Bounds::Positive);
+/// Length of the recording that is played again.
+const WINDOW: Parameter = of_agent("window_s", Bounds::Positive);
+const PERIOD: Parameter = required("period_s", Bounds::Positive);
+const SMOOTHING: Parameter = required("smoothing", Bounds::AtLeast(1e-6));
 /// Length of the slots of time that are hit or not.
 const SLOT: Parameter = of_agent("burst_s", Bounds::Positive);
 /// Share of the slots that are hit.
@@ -138,95 +145,38 @@ impl FaultKind {
     const fn described(self) -> Described {
         use FaultTarget::{Actuator, Network, Plant, Sensor};
         match self {
-            Self::LossOfEffectiveness => (
-                "loss-of-effectiveness",
-                &[Actuator],
-                const { &[required("magnitude", Bounds::Share)] },
-            ),
-            Self::Bias => ("bias", &[Actuator, Sensor], const { &[MAGNITUDE] }),
+            Self::LossOfEffectiveness => ("loss-of-effectiveness", &[Actuator], &[LOST_SHARE]),
+            Self::Bias => ("bias", &[Actuator, Sensor], &[MAGNITUDE]),
             Self::Stuck => ("stuck", &[Actuator], &[]),
             Self::Float => ("float", &[Actuator], &[]),
-            Self::HardOver => ("hard-over", &[Actuator], const { &[MAGNITUDE] }),
+            Self::HardOver => ("hard-over", &[Actuator], &[MAGNITUDE]),
             Self::Oscillatory => (
                 "oscillatory",
                 &[Actuator, Sensor, Network],
-                const {
-                    &[
-                        required("amplitude", Bounds::Any),
-                        required("frequency_rad_s", Bounds::NonNegative),
-                        PHASE,
-                    ]
-                },
+                &[AMPLITUDE, FREQUENCY, PHASE],
             ),
-            Self::Intermittent => (
-                "intermittent",
-                &[Actuator],
-                const { &[required("magnitude", Bounds::Share), SLOT, SHARE] },
-            ),
-            Self::RateLimit => (
-                "rate-limit",
-                &[Actuator],
-                const { &[required("rate", Bounds::NonNegative)] },
-            ),
-            Self::Delay => (
-                "delay",
-                &[Actuator, Sensor, Network],
-                const { &[of_agent("delay_s", Bounds::Positive)] },
-            ),
-            Self::Drift => (
-                "drift",
-                &[Actuator, Sensor, Network],
-                const { &[required("rate", Bounds::Any)] },
-            ),
-            Self::Scale => ("scale", &[Sensor], const { &[MAGNITUDE] }),
-            Self::Noise => (
-                "noise",
-                &[Sensor],
-                const { &[required("std", Bounds::NonNegative)] },
-            ),
+            Self::Intermittent => ("intermittent", &[Actuator], &[LOST_SHARE, SLOT, SHARE]),
+            Self::RateLimit => ("rate-limit", &[Actuator], &[LARGEST_RATE]),
+            Self::Delay => ("delay", &[Actuator, Sensor, Network], &[DELAY]),
+            Self::Drift => ("drift", &[Actuator, Sensor, Network], &[DRIFT_RATE]),
+            Self::Scale => ("scale", &[Sensor], &[MAGNITUDE]),
+            Self::Noise => ("noise", &[Sensor], &[STD]),
             Self::Freeze => ("freeze", &[Sensor], &[]),
-            Self::Dropout => ("dropout", &[Sensor], const { &[SLOT, SHARE] }),
-            Self::Outlier => (
-                "outlier",
-                &[Sensor],
-                const { &[required("amplitude", Bounds::Any), SHARE] },
-            ),
+            Self::Dropout => ("dropout", &[Sensor], &[SLOT, SHARE]),
+            Self::Outlier => ("outlier", &[Sensor], &[AMPLITUDE, SHARE]),
             Self::SmoothedSquare => (
                 "smoothed-square",
                 &[Sensor],
-                const {
-                    &[
-                        required("amplitude", Bounds::Any),
-                        required("period_s", Bounds::Positive),
-                        required("smoothing", Bounds::AtLeast(1e-6)),
-                        PHASE,
-                    ]
-                },
+                &[AMPLITUDE, PERIOD, SMOOTHING, PHASE],
             ),
-            Self::FalseData => ("false-data", &[Network], const { &[MAGNITUDE] }),
-            Self::DenialOfService => ("denial-of-service", &[Network], const { &[SLOT, SHARE] }),
-            Self::Replay => (
-                "replay",
-                &[Network],
-                const { &[of_agent("window_s", Bounds::Positive)] },
-            ),
-            Self::Interference => ("interference", &[Network], const { &[MAGNITUDE] }),
-            Self::Mass => (
-                "mass",
-                &[Plant],
-                const { &[of_agent("magnitude", Bounds::AtLeast(-0.9))] },
-            ),
-            Self::Inertia => (
-                "inertia",
-                &[Plant],
-                const { &[of_agent("magnitude", Bounds::AtLeast(-0.9))] },
-            ),
-            Self::CenterOfMass => ("center-of-mass", &[Plant], const { &[OFFSET_X, OFFSET_Y] }),
-            Self::Payload => (
-                "payload",
-                &[Plant],
-                const { &[of_agent("mass_kg", Bounds::NonNegative), OFFSET_X, OFFSET_Y] },
-            ),
+            Self::FalseData => ("false-data", &[Network], &[MAGNITUDE]),
+            Self::DenialOfService => ("denial-of-service", &[Network], &[SLOT, SHARE]),
+            Self::Replay => ("replay", &[Network], &[WINDOW]),
+            Self::Interference => ("interference", &[Network], &[MAGNITUDE]),
+            Self::Mass => ("mass", &[Plant], &[GROWTH]),
+            Self::Inertia => ("inertia", &[Plant], &[GROWTH]),
+            Self::CenterOfMass => ("center-of-mass", &[Plant], &[OFFSET_X, OFFSET_Y]),
+            Self::Payload => ("payload", &[Plant], &[PAYLOAD_MASS, OFFSET_X, OFFSET_Y]),
         }
     }
 

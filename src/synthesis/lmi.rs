@@ -115,26 +115,64 @@ pub(super) fn minimise(
 ) -> Option<Optimum> {
     lapack::ensure_linked();
     let zero = vec![0.0; variables];
-    let unit = |k: usize| {
-        let mut x = zero.clone();
-        x[k] = 1.0;
-        x
-    };
-    let blocks: Vec<Block> = inequalities
+    let blocks = inequalities
         .iter()
-        .map(|f| {
-            let constant = f(&zero);
-            let coefficients = (0..variables).map(|k| f(&unit(k)) - &constant).collect();
-            Block {
-                rows: vec![1.0; constant.nrows()],
-                constant,
-                coefficients,
-            }
-        })
+        .map(|inequality| Block::new(inequality, variables));
+    let (blocks, columns) = equilibrated(blocks.collect(), variables);
+    let (constraints, right) = stacked(&blocks, &columns);
+    let linear: Vec<f64> = columns
+        .iter()
+        .enumerate()
+        .map(|(k, scale)| (cost(&unit(variables, k)) - cost(&zero)) * scale)
         .collect();
-    let (blocks, columns) = equilibrated(blocks, variables);
+    let cones: Vec<_> = blocks
+        .iter()
+        .map(|block| PSDTriangleConeT(block.rows.len()))
+        .collect();
 
-    // A x + s = b with s = svec F(x) in the cone: b = svec F_0, column k of A = -svec F_k.
+    let no_quadratic = CscMatrix::zeros((variables, variables));
+    let mut solver = DefaultSolver::new(
+        &no_quadratic,
+        &linear,
+        &constraints,
+        &right,
+        &cones,
+        settings(),
+    )
+    .ok()?;
+    solver.solve();
+    Some(Optimum {
+        status: solver.solution.status,
+        iterations: solver.solution.iterations,
+        solve_time_s: solver.solution.solve_time,
+        x: zip(solver.solution.x, columns)
+            .map(|(x, scale)| x * scale)
+            .collect(),
+    })
+}
+
+/// The point whose only entry that is not zero is the k-th, a one.
+fn unit(variables: usize, k: usize) -> Vec<f64> {
+    let mut x = vec![0.0; variables];
+    x[k] = 1.0;
+    x
+}
+
+/// How Clarabel is to solve.
+fn settings() -> DefaultSettings<f64> {
+    // One thread and no time limit: the same problem always ends in the same bits.
+    DefaultSettings {
+        verbose: false,
+        max_threads: 1,
+        equilibrate_enable: false,
+        direct_solve_method: "qdldl".into(),
+        chordal_decomposition_enable: false,
+        ..DefaultSettings::default()
+    }
+}
+
+/// A and b of A x + s = b with s = svec F(x) in the cone: b = svec F_0, column k of A = -svec F_k.
+fn stacked(blocks: &[Block], columns: &[f64]) -> (CscMatrix<f64>, Vec<f64>) {
     let mut column_start = vec![0];
     let mut row = Vec::new();
     let mut value = Vec::new();
@@ -154,45 +192,8 @@ pub(super) fn minimise(
         .iter()
         .flat_map(|block| svec(&block.scaled(&block.constant)))
         .collect();
-    let constraints = CscMatrix::new(right.len(), variables, column_start, row, value);
-    let linear: Vec<f64> = columns
-        .iter()
-        .enumerate()
-        .map(|(k, scale)| (cost(&unit(k)) - cost(&zero)) * scale)
-        .collect();
-    let cones: Vec<_> = blocks
-        .iter()
-        .map(|block| PSDTriangleConeT(block.rows.len()))
-        .collect();
-
-    // One thread and no time limit: the same problem always ends in the same bits.
-    let settings = DefaultSettings {
-        verbose: false,
-        max_threads: 1,
-        equilibrate_enable: false,
-        direct_solve_method: "qdldl".into(),
-        chordal_decomposition_enable: false,
-        ..DefaultSettings::default()
-    };
-    let no_quadratic = CscMatrix::zeros((variables, variables));
-    let mut solver = DefaultSolver::new(
-        &no_quadratic,
-        &linear,
-        &constraints,
-        &right,
-        &cones,
-        settings,
-    )
-    .ok()?;
-    solver.solve();
-    Some(Optimum {
-        status: solver.solution.status,
-        iterations: solver.solution.iterations,
-        solve_time_s: solver.solution.solve_time,
-        x: zip(solver.solution.x, columns)
-            .map(|(x, scale)| x * scale)
-            .collect(),
-    })
+    let constraints = CscMatrix::new(right.len(), columns.len(), column_start, row, value);
+    (constraints, right)
 }
 
 /// An inequality `F_0 + sum of x_k F_k >= 0`, seen as `diag(rows) F diag(rows) >= 0`.
@@ -203,6 +204,19 @@ struct Block {
 }
 
 impl Block {
+    /// The coefficients of an affine function of so many variables, not yet scaled.
+    fn new(inequality: Inequality<'_>, variables: usize) -> Self {
+        let constant = inequality(&vec![0.0; variables]);
+        let coefficients = (0..variables)
+            .map(|k| inequality(&unit(variables, k)) - &constant)
+            .collect();
+        Self {
+            rows: vec![1.0; constant.nrows()],
+            constant,
+            coefficients,
+        }
+    }
+
     fn scaled(&self, m: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| {
             m[(i, j)] * self.rows[i] * self.rows[j]

@@ -90,6 +90,52 @@ impl Check<'_> {
     }
 
     fn uav(&self, file: &AgentFile) -> Result<Uav, CampaignError> {
+        let actuation = self.uav_actuation(file)?;
+        let number = |key: &str, value: Option<f64>, default: f64, bounds: Bounds| {
+            self.number(key, value.unwrap_or(default), bounds)
+        };
+        let positive =
+            |key: &str, value, default: f64| number(key, value, default, Bounds::Positive);
+        let not_negative =
+            |key: &str, value, default: f64| number(key, value, default, Bounds::NonNegative);
+        let inertia_kg_m2 = self.uav_inertia(file)?;
+        let max_tilt_rad = positive("agent.max_tilt_rad", file.max_tilt_rad, 1.0)?;
+        if max_tilt_rad >= std::f64::consts::FRAC_PI_2 {
+            return Err(self.invalid(
+                "agent.max_tilt_rad",
+                in_toml(max_tilt_rad),
+                "must be below pi/2",
+                "use 1.0 or less",
+            ));
+        }
+        Ok(Uav {
+            actuation,
+            mass_kg: positive("agent.mass_kg", file.mass_kg, PAPER_MASS_KG)?,
+            inertia_kg_m2,
+            drag_n_s_m: not_negative("agent.drag_n_s_m", file.drag_n_s_m, PAPER_DRAG_N_S_M)?,
+            angular_drag_n_m_s: not_negative(
+                "agent.angular_drag_n_m_s",
+                file.angular_drag_n_m_s,
+                PAPER_ANGULAR_DRAG_N_M_S,
+            )?,
+            gravity_m_s2: not_negative(
+                "agent.gravity_m_s2",
+                file.gravity_m_s2,
+                PAPER_GRAVITY_M_S2,
+            )?,
+            command_filter_rad_s: positive(
+                "agent.command_filter_rad_s",
+                file.command_filter_rad_s,
+                20.0,
+            )?,
+            max_thrust_n: positive("agent.max_thrust_n", file.max_thrust_n, 80.0)?,
+            max_torque_n_m: positive("agent.max_torque_n_m", file.max_torque_n_m, 60.0)?,
+            max_tilt_rad,
+        })
+    }
+
+    /// What a UAV's command acts through; what belongs to another actuation is refused.
+    fn uav_actuation(&self, file: &AgentFile) -> Result<ActuationKind, CampaignError> {
         let actuation = file.actuation.unwrap_or(ActuationKind::Full);
         if actuation == ActuationKind::Limited {
             return Err(self.invalid(
@@ -116,9 +162,11 @@ impl Check<'_> {
                 "remove it or set agent.actuation = \"thrust\"",
             ));
         }
-        let number = |key: &str, value: Option<f64>, default: f64, bounds: Bounds| {
-            self.number(key, value.unwrap_or(default), bounds)
-        };
+        Ok(actuation)
+    }
+
+    /// Principal inertias that a body can have.
+    fn uav_inertia(&self, file: &AgentFile) -> Result<[f64; 3], CampaignError> {
         let inertia_kg_m2 = file
             .inertia_kg_m2
             .map_or(PAPER_INERTIA_KG_M2, |list| list.0);
@@ -135,66 +183,6 @@ impl Check<'_> {
                 "correct the inertias",
             ));
         }
-        let max_tilt_rad = number(
-            "agent.max_tilt_rad",
-            file.max_tilt_rad,
-            1.0,
-            Bounds::Positive,
-        )?;
-        if max_tilt_rad >= std::f64::consts::FRAC_PI_2 {
-            return Err(self.invalid(
-                "agent.max_tilt_rad",
-                in_toml(max_tilt_rad),
-                "must be below pi/2",
-                "use 1.0 or less",
-            ));
-        }
-        Ok(Uav {
-            actuation,
-            mass_kg: number(
-                "agent.mass_kg",
-                file.mass_kg,
-                PAPER_MASS_KG,
-                Bounds::Positive,
-            )?,
-            inertia_kg_m2,
-            drag_n_s_m: number(
-                "agent.drag_n_s_m",
-                file.drag_n_s_m,
-                PAPER_DRAG_N_S_M,
-                Bounds::NonNegative,
-            )?,
-            angular_drag_n_m_s: number(
-                "agent.angular_drag_n_m_s",
-                file.angular_drag_n_m_s,
-                PAPER_ANGULAR_DRAG_N_M_S,
-                Bounds::NonNegative,
-            )?,
-            gravity_m_s2: number(
-                "agent.gravity_m_s2",
-                file.gravity_m_s2,
-                PAPER_GRAVITY_M_S2,
-                Bounds::NonNegative,
-            )?,
-            command_filter_rad_s: number(
-                "agent.command_filter_rad_s",
-                file.command_filter_rad_s,
-                20.0,
-                Bounds::Positive,
-            )?,
-            max_thrust_n: number(
-                "agent.max_thrust_n",
-                file.max_thrust_n,
-                80.0,
-                Bounds::Positive,
-            )?,
-            max_torque_n_m: number(
-                "agent.max_torque_n_m",
-                file.max_torque_n_m,
-                60.0,
-                Bounds::Positive,
-            )?,
-            max_tilt_rad,
-        })
+        Ok(inertia_kg_m2)
     }
 }

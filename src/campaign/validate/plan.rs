@@ -180,34 +180,7 @@ impl Check<'_> {
                 "take one of these; [] for none",
             )),
             StratumFaultsFile::Names(names) => {
-                let mut certain = Vec::new();
-                for (place, own) in names.iter().enumerate() {
-                    let key = format!("{key}[{place}]");
-                    let known = faults.iter().position(|(name, _)| name.as_ref() == own);
-                    let Some(fault) = known else {
-                        let all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
-                        let limit = format!("the campaign's faults are {}", all.join(", "));
-                        let remedy = did_you_mean(own, all, "name one of them");
-                        return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
-                    };
-                    if faults[fault].1 {
-                        return Err(self.invalid(
-                            key,
-                            format!("{own:?}"),
-                            "this fault is part of the background of all strata",
-                            "remove it from the list, or its background = true",
-                        ));
-                    }
-                    if certain.contains(&fault) {
-                        return Err(self.invalid(
-                            key,
-                            format!("{own:?}"),
-                            "this fault is in the list already",
-                            "name it once",
-                        ));
-                    }
-                    certain.push(fault);
-                }
+                let certain = self.named_faults(&key, names, faults)?;
                 let default = match names.as_slice() {
                     [] => "none".to_string(),
                     names => names.join(" + "),
@@ -215,5 +188,43 @@ impl Check<'_> {
                 Ok(vec![(name(&default), StratumFaults::Certain(certain))])
             }
         }
+    }
+
+    /// The faults of these names, by index.
+    fn named_faults(
+        &self,
+        key: &str,
+        names: &[String],
+        faults: &[(Arc<str>, bool)],
+    ) -> Result<Vec<usize>, CampaignError> {
+        let mut certain = Vec::new();
+        for (place, own) in names.iter().enumerate() {
+            let key = format!("{key}[{place}]");
+            let known = faults.iter().position(|(name, _)| name.as_ref() == own);
+            let Some(fault) = known else {
+                let all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
+                let limit = format!("the campaign's faults are {}", all.join(", "));
+                let remedy = did_you_mean(own, all, "name one of them");
+                return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
+            };
+            if faults[fault].1 {
+                return Err(self.invalid(
+                    key,
+                    format!("{own:?}"),
+                    "this fault is part of the background of all strata",
+                    "remove it from the list, or its background = true",
+                ));
+            }
+            if certain.contains(&fault) {
+                return Err(self.invalid(
+                    key,
+                    format!("{own:?}"),
+                    "this fault is in the list already",
+                    "name it once",
+                ));
+            }
+            certain.push(fault);
+        }
+        Ok(certain)
     }
 }

@@ -42,15 +42,7 @@ pub(super) unsafe fn syevr<T: RealField + Copy>(
     let order = n;
     let n = size(n).ok_or(-4)?;
     let lda = leading(lda, n).ok_or(-6)?;
-    if range == b'V' && n > 0 && vu <= vl {
-        return Err(-8);
-    }
-    if range == b'I' && !(1..=order.max(1)).contains(&il) {
-        return Err(-9);
-    }
-    if range == b'I' && !(order.min(il)..=order).contains(&iu) {
-        return Err(-10);
-    }
+    check_range(range, order, (vl, vu), (il, iu))?;
     let ldz = leading(ldz, if wants_vectors { n } else { 0 }).ok_or(-15)?;
     let is_query = lwork == -1 || liwork == -1;
     if !is_query && lwork < 1 {
@@ -72,19 +64,7 @@ pub(super) unsafe fn syevr<T: RealField + Copy>(
     let a = unsafe { view(a, (n, n), lda) };
     let Eigen { values, vectors } =
         symmetric_eigen(lower_triangle(&a, lower).map(double)).ok_or(1)?;
-    let mut chosen: Vec<usize> = (0..n).collect();
-    chosen.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
-    match range {
-        b'V' => {
-            let (vl, vu) = (double(vl), double(vu));
-            chosen.retain(|&i| vl < values[i] && values[i] <= vu);
-        }
-        b'I' => {
-            chosen.truncate(size(iu).unwrap_or(0));
-            chosen.drain(..size(il - 1).unwrap_or(0).min(chosen.len()));
-        }
-        _ => {}
-    }
+    let chosen = chosen_eigenvalues(&values, range, (double(vl), double(vu)), (il, iu));
     // SAFETY: `w` holds n entries, `z` as many columns as there are values chosen, `isuppz` twice
     // as many entries.
     unsafe {
@@ -105,6 +85,45 @@ pub(super) unsafe fn syevr<T: RealField + Copy>(
         }
     }
     Ok(())
+}
+
+/// Refuses a range of eigenvalues, by value or by place from 1, that is none.
+fn check_range<T: RealField>(
+    range: u8,
+    order: i32,
+    (vl, vu): (T, T),
+    (il, iu): (i32, i32),
+) -> Outcome {
+    if range == b'V' && order > 0 && vu <= vl {
+        return Err(-8);
+    }
+    if range == b'I' && !(1..=order.max(1)).contains(&il) {
+        return Err(-9);
+    }
+    if range == b'I' && !(order.min(il)..=order).contains(&iu) {
+        return Err(-10);
+    }
+    Ok(())
+}
+
+/// The places of the eigenvalues in a range, by value (vl, vu] or by place il..=iu from 1, in ascending order.
+fn chosen_eigenvalues(
+    values: &[f64],
+    range: u8,
+    (vl, vu): (f64, f64),
+    (il, iu): (i32, i32),
+) -> Vec<usize> {
+    let mut chosen: Vec<usize> = (0..values.len()).collect();
+    chosen.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    match range {
+        b'V' => chosen.retain(|&i| vl < values[i] && values[i] <= vu),
+        b'I' => {
+            chosen.truncate(size(iu).unwrap_or(0));
+            chosen.drain(..size(il - 1).unwrap_or(0).min(chosen.len()));
+        }
+        _ => {}
+    }
+    chosen
 }
 
 pub(super) unsafe fn gesdd<T: RealField + Copy>(
