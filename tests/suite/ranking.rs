@@ -7,8 +7,8 @@ use urts_mc::campaign::Campaign;
 use urts_mc::draw::draw;
 use urts_mc::model::episode::AgentOutcome;
 use urts_mc::model::metric::ChannelOutcome;
-use urts_mc::results::sensitivity::{SensitivityResult, rank, worst};
 use urts_mc::results::scores::{Scores, Status};
+use urts_mc::results::sensitivity::{SensitivityResult, rank, worst};
 use urts_mc::results::tables::Tables;
 
 /// A campaign whose controllers have reasons to fail, and its scores.
