@@ -160,7 +160,7 @@ impl fmt::Display for DistributionFile {
 }
 
 /// A number as TOML writes it.
-pub(in crate::campaign) fn in_toml(number: f64) -> String {
+pub(crate) fn in_toml(number: f64) -> String {
     if number.is_nan() {
         "nan".to_string()
     } else {
@@ -169,13 +169,13 @@ pub(in crate::campaign) fn in_toml(number: f64) -> String {
 }
 
 /// A computed number without the dust of binary fractions: 12 digits of it.
-pub(in crate::campaign) fn without_dust(number: f64) -> f64 {
+pub(crate) fn without_dust(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 impl SamplingScope {
     /// The name in a campaign file.
-    pub(in crate::campaign) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Episode => "episode",
             Self::Agent => "agent",

@@ -58,11 +58,7 @@ impl Check<'_> {
     }
 
     /// Refuses a number of episodes that the design does not divide into equal, balanced replicates.
-    pub(in crate::campaign) fn divides(
-        &self,
-        sampling: Sampling,
-        episodes: u32,
-    ) -> Result<(), CampaignError> {
+    pub(crate) fn divides(&self, sampling: Sampling, episodes: u32) -> Result<(), CampaignError> {
         let Some(replicates) = sampling.replicates() else {
             return Ok(());
         };
