@@ -133,7 +133,9 @@ impl File {
         let mut named: BTreeSet<Module> = items.cloned().collect();
         for path in paths(&self.body) {
             let local = known().find(|own| own.last() == path.first());
-            match (absolute(&path, &self.module, modules), local) {
+            // A single word is a name of the file's own, or one that it passes on; `pub(super)` and `mod x;` are no uses.
+            let absolute = absolute(&path, &self.module, modules).filter(|_| path.len() > 1);
+            match (absolute, local) {
                 (Some(path), _) => named.insert(path),
                 (None, Some(local)) if path.len() > 1 => {
                     named.insert([local.clone(), path[1..].to_vec()].concat())
