@@ -1,21 +1,21 @@
-//! Flying batches of episodes: draws up, spans of steps, outcomes down.
+//! Simulating batches of episodes: draws up, spans of steps, outcomes down.
 
 use super::GpuError;
 use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
+use super::instant::TraceInstant;
 use super::layout;
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use super::pipeline::{ENTRIES, Entry, Pipeline, binding_layout, shape};
+use super::times::GpuTimes;
 use super::tuning::Tuning;
 use super::uniforms::setting;
 use crate::backend::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
-use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Controller, ControllerKind, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -26,20 +26,6 @@ const DISPATCH: Duration = Duration::from_millis(100);
 const FIRST_STEPS: u32 = 4;
 /// Samples of a trace between two read-backs.
 const SAMPLES: u32 = 64;
-
-/// Wall-clock times of a GPU's flying, s.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GpuTimes {
-    /// Shaders to machine code.
-    pub compile_s: f64,
-    /// Drawing episodes and sending them.
-    pub upload_s: f64,
-    /// The episode loop.
-    pub kernel_s: f64,
-    /// Receiving outcomes.
-    pub read_back_s: f64,
-}
 
 /// A campaign's controllers, ready to fly on a GPU.
 pub struct GpuSimulator<'g> {
@@ -55,39 +41,6 @@ pub struct GpuSimulator<'g> {
     /// Steps of a dispatch, at most: what the loops of its shaders and the references on the device allow.
     most_steps: u32,
     times: GpuTimes,
-}
-
-/// What is told of an instant of a trace.
-pub struct Instantly<'a> {
-    /// Step number.
-    pub step: u32,
-    groups: &'a [Pipeline],
-    /// Of each group, the words of this instant.
-    words: Vec<&'a [u32]>,
-}
-
-impl Instantly<'_> {
-    /// What every agent and channel of an episode shows, `[agent][channel]`; episodes are counted within the trace.
-    #[must_use]
-    pub fn agents(&self, episode: usize, controller: usize) -> Vec<Vec<ChannelSample>> {
-        let groups = || {
-            let groups = self.groups.iter().zip(&self.words);
-            groups.filter(|(group, _)| group.controller == controller)
-        };
-        let team = groups().next().map_or(0, |(group, _)| group.shape.team);
-        (0..team)
-            .map(|agent| {
-                let channels = groups().flat_map(|(Pipeline { shape, .. }, words)| {
-                    let (block, lane) = (episode / shape.lanes, episode % shape.lanes);
-                    let words = &words[block * SHOWN_WORDS * shape.workgroup()..];
-                    (0..shape.channels).map(move |channel| {
-                        layout::shown(words, shape, shape.place(channel, agent, lane))
-                    })
-                });
-                channels.collect()
-            })
-            .collect()
-    }
 }
 
 impl<'g> GpuSimulator<'g> {
@@ -239,7 +192,7 @@ impl<'g> GpuSimulator<'g> {
         &mut self,
         episodes: &[u32],
         every: u32,
-        visit: &mut dyn FnMut(&Instantly<'_>),
+        visit: &mut dyn FnMut(&TraceInstant<'_>),
     ) -> Result<Vec<EpisodeResult>, GpuError> {
         let campaign = &self.model.campaign;
         let (steps, every) = (campaign.time.steps, every.max(1));
@@ -280,7 +233,7 @@ impl<'g> GpuSimulator<'g> {
                         &read[sample * group.invocations(episodes.len()) * SHOWN_WORDS..]
                     })
                     .collect();
-                visit(&Instantly {
+                visit(&TraceInstant {
                     step,
                     groups: &self.groups,
                     words,

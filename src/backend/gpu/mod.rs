@@ -7,12 +7,14 @@ mod adapter;
 mod batch;
 mod buffers;
 mod device;
+mod instant;
 mod iterations;
 pub(crate) mod layout;
 mod pipeline;
 pub(crate) mod shape;
 pub(crate) mod signals;
 mod source;
+mod times;
 mod tuning;
 pub(crate) mod uniforms;
 
@@ -21,8 +23,9 @@ pub(crate) mod uniforms;
 mod probes;
 
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
-pub use batch::{GpuSimulator, GpuTimes};
+pub use batch::GpuSimulator;
 pub use device::Gpu;
+pub use times::GpuTimes;
 pub use tuning::Tuning;
 
 use crate::util::suggest::did_you_mean;

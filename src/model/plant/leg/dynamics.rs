@@ -53,6 +53,7 @@ impl<L: Lane> Kernel for ForwardDynamics<'_, L> {
     }
 }
 
+// In one piece: unrolled arithmetic over six joints, whose order the shader keeps.
 #[inline(always)]
 fn accelerations<L: Lane>(
     twists: [Twist; LEG_JOINTS],
