@@ -5,6 +5,7 @@ pub mod error;
 pub mod manifest;
 pub mod replay;
 pub mod replay_files;
+mod statistics;
 pub(crate) mod table_reader;
 
 use crate::agent::Agent;
@@ -12,7 +13,6 @@ use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;
 use crate::controllers::{GainSet, GainsError};
 use crate::results;
-use crate::results::sensitivity;
 use crate::results::sensitivity::{SensitivityResult, WorstEpisode};
 use crate::results::{MetricQuantiles, PairedComparison, Screening};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
@@ -20,6 +20,7 @@ use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, fly, op
 use directory::OutputDir;
 use error::{MANIFEST, OutputError};
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
+use statistics::Statistics;
 use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
@@ -174,43 +175,13 @@ pub fn run_on(
 
     let start = Instant::now();
     told(Progress::Statistics);
-    let summary = results::summarise(campaign, &tables.scores);
-    let comparisons = results::compare(campaign, &tables.scores);
-    let requirements = results::requirements(campaign, &tables.scores);
-    let screenings = results::screen(campaign, &tables.scores);
-    let ranking = flight
-        .pool
-        .install(|| sensitivity::rank(campaign, &tables.scores));
-    let worst = sensitivity::worst(campaign, &tables.scores);
+    let statistics = Statistics::of(campaign, &tables.scores, &flight.pool);
     times.statistics_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
     told(Progress::Writing);
     out.begin()?;
-    let summary_table = results::summary_table(campaign, &summary);
-    let comparison_table = results::comparison_table(campaign, &comparisons);
-    let screening_table = results::screening_table(&screenings);
-    let ranking_table = sensitivity::ranking_table(&ranking);
-    let worst_table = sensitivity::worst_table(&worst);
-    for (name, table, with_csv) in [
-        ("episodes", &tables.episodes, extras.csv),
-        ("channels", &tables.channels, extras.csv),
-        ("summary", &summary_table, true),
-        ("comparison", &comparison_table, true),
-        ("screening", &screening_table, true),
-        ("ranking", &ranking_table, true),
-        ("worst", &worst_table, true),
-    ] {
-        // One controller has nothing to be compared with; without strata nothing is screened; where nothing varies, nothing is
-        // ranked.
-        if table.is_empty() {
-            continue;
-        }
-        out.write_parquet(&format!("{name}.parquet"), table)?;
-        if with_csv {
-            out.write_csv(&format!("{name}.csv"), table)?;
-        }
-    }
+    statistics.write(campaign, &tables, extras.csv, out)?;
     out.write("gains.json", &pretty(&gains.to_file(campaign))?)?;
     times.writing_s = start.elapsed().as_secs_f64();
     let manifest = Manifest {
@@ -228,9 +199,9 @@ pub fn run_on(
         episodes,
         episodes_asked: campaign.episodes,
         stopped: watch.found(campaign),
-        requirements,
-        verdict: results::verdict(&summary, &comparisons),
-        harm: results::harm(&screenings),
+        verdict: results::verdict(&statistics.summary, &statistics.comparisons),
+        harm: results::harm(&statistics.screenings),
+        requirements: statistics.requirements,
         interrupted: interrupted.map(|error| error.to_string()),
         precision: options.precision,
         legs,
@@ -241,11 +212,11 @@ pub fn run_on(
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
     Ok(Findings {
-        summary,
-        comparisons,
-        screenings,
-        ranking,
-        worst,
+        summary: statistics.summary,
+        comparisons: statistics.comparisons,
+        screenings: statistics.screenings,
+        ranking: statistics.ranking,
+        worst: statistics.worst,
         manifest,
     })
 }

@@ -90,33 +90,9 @@ pub fn replay(
     let manifest = Manifest::read(dir)?;
     let campaign = manifest.campaign()?;
     if episode >= manifest.episodes {
-        return Err(ReplayError::Usage {
-            option: "--episode",
-            value: episode.to_string(),
-            limit: format!(
-                "the run has {} episodes, numbered from 0",
-                manifest.episodes
-            ),
-            remedy: format!("use 0 to {}", manifest.episodes.saturating_sub(1)),
-        });
+        return Err(no_such_episode(episode, manifest.episodes));
     }
-    let index = campaign
-        .controllers
-        .iter()
-        .position(|name| name == controller)
-        .ok_or_else(|| ReplayError::Usage {
-            option: "--controller",
-            value: controller.to_string(),
-            limit: format!(
-                "the run has no such controller, but {}",
-                campaign.controllers.join(", ")
-            ),
-            remedy: did_you_mean(
-                controller,
-                campaign.controllers.iter().map(String::as_str),
-                "name one of them",
-            ),
-        })?;
+    let index = index_of(&campaign, controller)?;
     let every = interval_steps(&campaign, interval_s)?;
     let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
     let leg = manifest
@@ -242,6 +218,36 @@ fn on_gpu(
     let flown = flown.into_iter().next();
     let outcomes = flown.ok_or("the adapter sent no episode back")?.outcomes;
     Ok(outcomes.into_iter().zip(snapshots).collect())
+}
+
+fn no_such_episode(episode: u32, episodes: u32) -> ReplayError {
+    ReplayError::Usage {
+        option: "--episode",
+        value: episode.to_string(),
+        limit: format!("the run has {} episodes, numbered from 0", episodes),
+        remedy: format!("use 0 to {}", episodes.saturating_sub(1)),
+    }
+}
+
+/// Which of the campaign's controllers has a name.
+fn index_of(campaign: &Campaign, controller: &str) -> Result<usize, ReplayError> {
+    campaign
+        .controllers
+        .iter()
+        .position(|name| name == controller)
+        .ok_or_else(|| ReplayError::Usage {
+            option: "--controller",
+            value: controller.to_string(),
+            limit: format!(
+                "the run has no such controller, but {}",
+                campaign.controllers.join(", ")
+            ),
+            remedy: did_you_mean(
+                controller,
+                campaign.controllers.iter().map(String::as_str),
+                "name one of them",
+            ),
+        })
 }
 
 /// The steps between two samples.
