@@ -229,6 +229,21 @@ pub(super) fn figure(scene: &EpisodeView<'_>, quantity: Quantity, agent: usize) 
         .map(|channel| panel(scene, quantity, (agent, channel), &scene.flights))
         .collect();
     let cut = drawn.iter().any(|(_, cut)| *cut);
+    let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
+    Figure {
+        legend: legend(scene, quantity, agent, &drawn),
+        caption: caption(scene, quantity, failed, cut),
+        panels: drawn.into_iter().map(|(panel, _)| panel).collect(),
+    }
+}
+
+/// What the curves of a figure are.
+fn legend(
+    scene: &EpisodeView<'_>,
+    quantity: Quantity,
+    agent: usize,
+    drawn: &[(Plot, bool)],
+) -> Vec<LegendEntry> {
     let asked = scene.asked();
     let mut legend = Vec::new();
     match quantity {
@@ -270,7 +285,11 @@ pub(super) fn figure(scene: &EpisodeView<'_>, quantity: Quantity, agent: usize) 
     if drawn.iter().any(|(panel, _)| !panel.levels.is_empty()) {
         legend.push(LegendEntry::line(Color::Limit, "limit"));
     }
-    let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
+    legend
+}
+
+/// What a figure shows; `failed` is whether a flight failed, `cut` whether a curve leaves its frame.
+fn caption(scene: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool) -> String {
     let mut caption = sentence(quantity.name());
     let mut add = |sentence: &str| {
         caption.push(' ');
@@ -300,9 +319,5 @@ pub(super) fn figure(scene: &EpisodeView<'_>, quantity: Quantity, agent: usize) 
     if cut {
         add("Peaks and curves that run away leave the frame.");
     }
-    Figure {
-        panels: drawn.into_iter().map(|(panel, _)| panel).collect(),
-        legend,
-        caption,
-    }
+    caption
 }

@@ -104,19 +104,7 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
     above.push(Mark::Line(path(zmp.clone()), ZMP, Stroke::Solid));
     above.push(Mark::Line(path(com.clone()), COM, Stroke::Solid));
 
-    let way = Way::of(walk);
-    let ankle = |foot: Foot| -> Vec<(f64, f64)> {
-        let point = |&t_s: &f64| {
-            let Ankle {
-                placement,
-                height_m,
-            } = walk.feet.ankles_at(t_s)[foot.index()];
-            (way.ahead(t_s, placement.position_m), height_m)
-        };
-        few.iter().map(point).collect()
-    };
-    let side = Foot::BOTH.map(|foot| Mark::Line(ankle(foot), LEGS[foot.index()], Stroke::Solid));
-
+    let side = ankles(walk, &few);
     let over_time = |coordinate: usize| -> Vec<Mark> {
         let pick = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
             let of = |(&t_s, &(x, y)): (&f64, &(f64, f64))| (t_s, [x, y][coordinate]);
@@ -131,14 +119,7 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
             Mark::Line(pick(&com), COM, Stroke::Solid),
         ]
     };
-    let ends = |pick: fn(&[f64; 2]) -> f64| {
-        let places = walk.feet.footholds();
-        let values = places.iter().map(|hold| pick(&hold.placement.position_m));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        })
-    };
-    let [across, up] = [ends(|at| at[0]), ends(|at| at[1])].map(|(low, high)| high - low + 0.3);
+    let [across, up] = extent(walk);
     let panel = |title: &str, labels: [&str; 2], marks: Vec<Mark>, equal: bool| Plot {
         title: title.to_string(),
         x: Axis::new(labels[0]),
@@ -172,6 +153,34 @@ fn plan(walk: &Walk, robot: &Robot) -> Figure {
                   and the one planned for."
             .into(),
     }
+}
+
+/// The ways of both ankles from the side.
+fn ankles(walk: &Walk, times_s: &[f64]) -> [Mark; 2] {
+    let way = Way::of(walk);
+    let ankle = |foot: Foot| -> Vec<(f64, f64)> {
+        let point = |&t_s: &f64| {
+            let Ankle {
+                placement,
+                height_m,
+            } = walk.feet.ankles_at(t_s)[foot.index()];
+            (way.ahead(t_s, placement.position_m), height_m)
+        };
+        times_s.iter().map(point).collect()
+    };
+    Foot::BOTH.map(|foot| Mark::Line(ankle(foot), LEGS[foot.index()], Stroke::Solid))
+}
+
+/// How far the footholds lie apart along x and y, with a margin, m.
+fn extent(walk: &Walk) -> [f64; 2] {
+    let ends = |pick: fn(&[f64; 2]) -> f64| {
+        let places = walk.feet.footholds();
+        let values = places.iter().map(|hold| pick(&hold.placement.position_m));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        })
+    };
+    [ends(|at| at[0]), ends(|at| at[1])].map(|(low, high)| high - low + 0.3)
 }
 
 /// The outline of a sole at a foothold.

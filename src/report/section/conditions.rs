@@ -7,6 +7,7 @@ use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::{RunData, whole};
 use crate::results::sensitivity::by_chance;
 use crate::run::replay::command;
+use crate::run::table_reader::TableReader;
 use crate::util::format;
 use std::collections::BTreeMap;
 
@@ -41,16 +42,7 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
     let mut listed: BTreeMap<String, usize> = BTreeMap::new();
     for row in 0..sheet.rows() {
         let text = |name: &str| sheet.text(row, name);
-        let what = match text("target") {
-            "failure" => format!("failures of {}", text("controller")),
-            "rmse" => format!("RMS error of {}, {}", text("controller"), text("group")),
-            _ => format!(
-                "log-ratio of {} to {}, {}",
-                text("controller"),
-                text("against"),
-                text("group")
-            ),
-        };
+        let what = target(sheet, row);
         let p = sheet.real(row, "p_holm");
         // Tables are sorted by strength; of those that chance explains as well, nothing is told.
         if tested && (p.is_nan() || p > 0.05) {
@@ -87,6 +79,41 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
             Cell::number(format!("{:.0}", sheet.real(row, "episodes"))),
         ]);
     }
+    let mut blocks = explained(evidence, tested, grid);
+    if !of_ratios.rows.is_empty() {
+        blocks.push(Block::Folded(
+            "What moves the comparisons".into(),
+            vec![
+                Block::text(
+                    "Above 0: the larger the quantity, the more the first of the pair gains.",
+                ),
+                Block::Grid(of_ratios),
+            ],
+        ));
+    }
+    if let Some((condition, group)) = strongest {
+        blocks.extend(bands(evidence, &condition, &group).map(Block::Figure));
+    }
+    Section::new("Which conditions matter", blocks)
+}
+
+/// What a row of the ranking is about.
+fn target(sheet: &TableReader, row: usize) -> String {
+    let text = |name: &str| sheet.text(row, name);
+    match text("target") {
+        "failure" => format!("failures of {}", text("controller")),
+        "rmse" => format!("RMS error of {}, {}", text("controller"), text("group")),
+        _ => format!(
+            "log-ratio of {} to {}, {}",
+            text("controller"),
+            text("against"),
+            text("group")
+        ),
+    }
+}
+
+/// The effects on failures and errors, and what is to be known of them.
+fn explained(evidence: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
     let mut blocks = Vec::new();
     if grid.rows.is_empty() {
         let strata = match evidence.campaign.strata.all() {
@@ -110,21 +137,7 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
         )));
         blocks.push(Block::Grid(grid));
     }
-    if !of_ratios.rows.is_empty() {
-        blocks.push(Block::Folded(
-            "What moves the comparisons".into(),
-            vec![
-                Block::text(
-                    "Above 0: the larger the quantity, the more the first of the pair gains.",
-                ),
-                Block::Grid(of_ratios),
-            ],
-        ));
-    }
-    if let Some((condition, group)) = strongest {
-        blocks.extend(bands(evidence, &condition, &group).map(Block::Figure));
-    }
-    Section::new("Which conditions matter", blocks)
+    blocks
 }
 
 /// Quantile bands of the RMS error over a condition.

@@ -5,6 +5,7 @@ use crate::campaign::ALL;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Section};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::RunData;
+use crate::run::table_reader::TableReader;
 use crate::util::format;
 
 /// Points of a drawn distribution: more cannot be told apart.
@@ -17,23 +18,11 @@ pub(crate) fn pairs(evidence: &RunData) -> Section {
         let text = "One controller has nothing to be compared with.";
         return Section::new("Pair by pair", vec![Block::text(text)]);
     }
-    let replicates = evidence.campaign.sampling.replicates().is_some();
-    let known = (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
-    let difference = match replicates {
-        true => "failure_rate_difference_replicates",
-        false => "failure_rate_difference",
-    };
-    let (log_ratio, interval) = match (replicates, known) {
-        (true, true) => (
-            "log_ratio_replicates",
-            "with its 95 % interval (Student's t over the replicates)",
-        ),
-        (true, false) => (
-            "log_ratio",
-            "without an interval, since the replicates are too few",
-        ),
-        (false, _) => ("log_ratio", "with its 95 % interval (BCa)"),
-    };
+    let Columns {
+        difference,
+        log_ratio,
+        interval,
+    } = Columns::of(evidence);
     let mut failures = Grid::new([
         "pair",
         "only the first fails",
@@ -55,19 +44,9 @@ pub(crate) fn pairs(evidence: &RunData) -> Section {
         let pair = format!("{} against {}", sheet.text(row, "a"), sheet.text(row, "b"));
         let of = |name: &str| sheet.real(row, name);
         if pair != last {
-            failures.rows.push(vec![
-                Cell::text(&*pair),
-                Cell::number(format!("{:.0}", of("only_a_failed"))),
-                Cell::number(format!("{:.0}", of("only_b_failed"))),
-                Cell::number(format!("{:.0}", of("both_failed"))),
-                Cell::number(format::points(
-                    of("failure_rate_difference"),
-                    of(&format!("{difference}_lower")),
-                    of(&format!("{difference}_upper")),
-                )),
-                Cell::number(format::p_value(of("mcnemar_mid_p"))),
-                Cell::number(format::p_value(of("mcnemar_mid_p_holm"))),
-            ]);
+            failures
+                .rows
+                .push(failures_of(sheet, row, &pair, difference));
             last.clone_from(&pair);
         }
         let factor = |side: &str| of(&format!("{log_ratio}{side}")).exp();
@@ -101,6 +80,63 @@ pub(crate) fn pairs(evidence: &RunData) -> Section {
             Block::Folded("Every channel".into(), vec![Block::Grid(folded)]),
         ],
     )
+}
+
+/// Which columns of the comparison hold what the sampling design allows.
+struct Columns {
+    /// The difference of failure rates, whose ends are `_lower` and `_upper`.
+    difference: &'static str,
+    /// The log-ratio of the errors.
+    log_ratio: &'static str,
+    /// What its interval is.
+    interval: &'static str,
+}
+
+impl Columns {
+    fn of(evidence: &RunData) -> Self {
+        let sheet = &evidence.comparison;
+        let replicates = evidence.campaign.sampling.replicates().is_some();
+        let known =
+            (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
+        let difference = match replicates {
+            true => "failure_rate_difference_replicates",
+            false => "failure_rate_difference",
+        };
+        let (log_ratio, interval) = match (replicates, known) {
+            (true, true) => (
+                "log_ratio_replicates",
+                "with its 95 % interval (Student's t over the replicates)",
+            ),
+            (true, false) => (
+                "log_ratio",
+                "without an interval, since the replicates are too few",
+            ),
+            (false, _) => ("log_ratio", "with its 95 % interval (BCa)"),
+        };
+        Self {
+            difference,
+            log_ratio,
+            interval,
+        }
+    }
+}
+
+/// How often the controllers of a pair fail.
+fn failures_of(sheet: &TableReader, row: usize, pair: &str, difference: &str) -> Vec<Cell> {
+    let of = |name: &str| sheet.real(row, name);
+    vec![
+        Cell::text(pair),
+        Cell::number(format!("{:.0}", of("only_a_failed"))),
+        Cell::number(format!("{:.0}", of("only_b_failed"))),
+        Cell::number(format!("{:.0}", of("both_failed"))),
+        Cell::number(format::points(
+            of("failure_rate_difference"),
+            of(&format!("{difference}_lower")),
+            of(&format!("{difference}_upper")),
+        )),
+        Cell::number(format::p_value(of("mcnemar_mid_p"))),
+        Cell::number(format::p_value(of("mcnemar_mid_p_holm"))),
+    ]
 }
 
 /// The distributions of the RMS error.
