@@ -161,16 +161,8 @@ pub fn run_on(
     times.synthesis_s = synthesis_s;
 
     let episodes = legs.iter().map(|leg| leg.episodes).sum();
-    if let Some(reason) = &interrupted
-        && let Ok(earlier) = Manifest::read(out.path())
-        && earlier.episodes > episodes
-    {
-        return Err(RunError::Interrupted {
-            reason: reason.clone(),
-            flown: episodes,
-            path: out.path().to_path_buf(),
-            earlier: earlier.episodes,
-        });
+    if let Some(reason) = &interrupted {
+        unless_more_is_there(out, reason, episodes)?;
     }
 
     let start = Instant::now();
@@ -201,7 +193,7 @@ pub fn run_on(
         stopped: watch.found(campaign),
         verdict: results::verdict(&statistics.summary, &statistics.comparisons),
         harm: results::harm(&statistics.screenings),
-        requirements: statistics.requirements,
+        requirements: statistics.requirements.clone(),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: options.precision,
         legs,
@@ -211,14 +203,31 @@ pub fn run_on(
         times,
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
-    Ok(Findings {
+    Ok(found(statistics, manifest))
+}
+
+fn found(statistics: Statistics, manifest: Manifest) -> Findings {
+    Findings {
         summary: statistics.summary,
         comparisons: statistics.comparisons,
         screenings: statistics.screenings,
         ranking: statistics.ranking,
         worst: statistics.worst,
         manifest,
-    })
+    }
+}
+
+/// An error if the directory keeps more episodes of an earlier run than an interrupted one has.
+fn unless_more_is_there(out: &OutputDir, reason: &GpuError, episodes: u32) -> Result<(), RunError> {
+    match Manifest::read(out.path()) {
+        Ok(earlier) if earlier.episodes > episodes => Err(RunError::Interrupted {
+            reason: reason.clone(),
+            flown: episodes,
+            path: out.path().to_path_buf(),
+            earlier: earlier.episodes,
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// The cross-check of a flight: of its first leg, on the engine that flew it.
