@@ -161,9 +161,7 @@ pub fn run_on(
     times.synthesis_s = synthesis_s;
 
     let episodes = legs.iter().map(|leg| leg.episodes).sum();
-    if let Some(reason) = &interrupted {
-        unless_more_is_there(out, reason, episodes)?;
-    }
+    unless_more_is_there(out, interrupted.as_ref(), episodes)?;
 
     let start = Instant::now();
     told(Progress::Statistics);
@@ -218,16 +216,23 @@ fn found(statistics: Statistics, manifest: Manifest) -> Findings {
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.
-fn unless_more_is_there(out: &OutputDir, reason: &GpuError, episodes: u32) -> Result<(), RunError> {
-    match Manifest::read(out.path()) {
-        Ok(earlier) if earlier.episodes > episodes => Err(RunError::Interrupted {
+fn unless_more_is_there(
+    out: &OutputDir,
+    interrupted: Option<&GpuError>,
+    episodes: u32,
+) -> Result<(), RunError> {
+    if let Some(reason) = interrupted
+        && let Ok(earlier) = Manifest::read(out.path())
+        && earlier.episodes > episodes
+    {
+        return Err(RunError::Interrupted {
             reason: reason.clone(),
             flown: episodes,
             path: out.path().to_path_buf(),
             earlier: earlier.episodes,
-        }),
-        _ => Ok(()),
+        });
     }
+    Ok(())
 }
 
 /// The cross-check of a flight: of its first leg, on the engine that flew it.
