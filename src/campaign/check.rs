@@ -1,11 +1,11 @@
 //! Checks of single values and of the shapes that all tables share.
 
 use super::distribution::Distribution;
-use super::error::{CampaignError, line_of};
+use super::error::CampaignError;
 use super::file::*;
 use super::quantity::RandomQuantity;
+use super::source::Source;
 use std::fmt::Display;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The values that a quantity may take.
@@ -124,8 +124,7 @@ impl<'a> Written<'a> {
 
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
-    pub(super) path: &'a Path,
-    pub(super) text: &'a str,
+    pub(super) source: Source<'a>,
     /// Names of an agent's channels, once they are known.
     pub(super) channels: Vec<Arc<str>>,
 }
@@ -139,10 +138,11 @@ impl Check<'_> {
         remedy: &str,
     ) -> CampaignError {
         let key = key.into();
-        let line = line_of(self.text, &key).map_or(String::new(), |line| format!(" (line {line})"));
+        let place = self.source.place_of(&key);
+        let place = place.map_or(String::new(), |place| format!(" ({place})"));
         CampaignError::Invalid {
-            path: self.path.to_path_buf(),
-            key: key + &line,
+            path: self.source.path.to_path_buf(),
+            key: key + &place,
             value: value.to_string(),
             limit: limit.to_string(),
             remedy: remedy.to_string(),

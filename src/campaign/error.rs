@@ -1,9 +1,9 @@
 //! What can be wrong with a campaign file.
 
+use super::overlay::{Setting, SettingError};
 use crate::util::suggest::nearest;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-use toml::de::{DeTable, DeValue};
 
 /// A campaign that cannot be run, and why.
 #[derive(Debug, Error)]
@@ -27,12 +27,22 @@ pub enum CampaignError {
     /// The robot's file holds no robot.
     #[error(transparent)]
     Robot(#[from] Box<crate::agent::robot::RobotError>),
+    /// A setting that cannot be laid over the file.
+    #[error("{}: --set {setting}: {error}", path.display())]
+    Setting {
+        /// The file.
+        path: PathBuf,
+        /// The setting, as it was written.
+        setting: String,
+        /// What is wrong with it.
+        error: SettingError,
+    },
     /// A value out of its limits, or a contradiction.
     #[error("{}: {key} = {value}: {limit}; {remedy}", path.display())]
     Invalid {
         /// The file.
         path: PathBuf,
-        /// The key, with the tables around it and its line.
+        /// The key, with the tables around it and its line, or the setting that it comes from.
         key: String,
         /// The value as it was understood.
         value: String,
@@ -43,17 +53,24 @@ pub enum CampaignError {
     },
 }
 
-/// A parse error in the words of a campaign's writer, with what to do.
-pub(super) fn syntax(path: &Path, error: &toml::de::Error) -> CampaignError {
+/// A parse error in the words of a campaign's writer, with what to do; `setting` brought in what is wrong, if not the file.
+pub(super) fn syntax(
+    path: &Path,
+    error: &toml::de::Error,
+    setting: Option<&Setting>,
+) -> CampaignError {
     let message = error.message();
     let shown = error.to_string();
-    let place = shown.trim_end().strip_suffix(message).unwrap_or_default();
+    let line = shown.trim_end().strip_suffix(message).unwrap_or_default();
     let missing = message.starts_with("missing field");
-    // What the whole file lacks has no place in it.
-    let place = if missing && error.span().is_none_or(|span| span.start == span.end) {
-        ""
-    } else {
-        place.strip_prefix("TOML parse error at ").unwrap_or(place)
+    let place = match setting {
+        Some(setting) => format!("--set {setting}: "),
+        // What the whole file lacks has no place in it.
+        None if missing && error.span().is_none_or(|span| span.start == span.end) => String::new(),
+        None => {
+            let line = line.strip_prefix("TOML parse error at ").unwrap_or(line);
+            line.to_string()
+        }
     };
     let remedy = if let Some(hint) = nearest_known(message) {
         format!("; did you mean `{hint}`?")
@@ -110,28 +127,4 @@ fn nearest_known(message: &str) -> Option<&str> {
     }
     let mut quoted = message.split('`').skip(1).step_by(2);
     nearest(quoted.next()?, quoted)
-}
-
-/// The line of a key such as `fault[1].agents[0].std` in the text of a campaign; that of the innermost table or list around
-/// it if it is not there.
-pub(super) fn line_of(text: &str, key: &str) -> Option<usize> {
-    let mut here = &DeValue::Table(DeTable::parse(text).ok()?.into_inner());
-    let mut place = None;
-    for name in key.split(['.', '[', ']']).filter(|name| !name.is_empty()) {
-        let found = match here {
-            DeValue::Table(table) => table
-                .get_key_value(name)
-                .map(|(key, value)| (key.span(), value)),
-            DeValue::Array(list) => name
-                .parse()
-                .ok()
-                .and_then(|index: usize| list.get(index))
-                .map(|value| (value.span(), value)),
-            _ => None,
-        };
-        let Some((span, value)) = found else { break };
-        (place, here) = (Some(span.start), value.get_ref());
-    }
-    let before = text.get(..place?)?;
-    Some(before.matches('\n').count() + 1)
 }

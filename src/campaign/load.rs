@@ -1,11 +1,15 @@
 //! From the text of a campaign file to a campaign.
 
 use super::check::Check;
-use super::error::{CampaignError, syntax};
+use super::error::CampaignError;
 use super::file::CampaignFile;
+use super::overlay::Setting;
+use super::source::Source;
 use super::validate::validate;
 use super::validated::Campaign;
+use serde::Deserialize;
 use std::path::Path;
+use toml::de::ValueDeserializer;
 
 impl Campaign {
     /// Reads and checks a campaign file.
@@ -13,11 +17,19 @@ impl Campaign {
     /// # Errors
     /// The first thing that is wrong with it, with file, key, value, limit and remedy.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
+        Self::load_with(path, &[])
+    }
+
+    /// The same with settings laid over the file, one after the other.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`]; what comes from a setting names it as its place.
+    pub fn load_with(path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
         let text = std::fs::read_to_string(path).map_err(|source| CampaignError::Read {
             path: path.to_path_buf(),
             source,
         })?;
-        let campaign = Self::parse(&text, path)?;
+        let campaign = Self::parse_with(&text, path, overlay)?;
         campaign.require_files()?;
         Ok(campaign)
     }
@@ -37,11 +49,7 @@ impl Campaign {
                 &named.gains,
             )
         });
-        let check = Check {
-            path: &self.path,
-            text: &self.text,
-            channels: Vec::new(),
-        };
+        let check = self.check();
         match own.chain(of_named).find(|(_, path)| !path.is_file()) {
             Some((key, path)) => {
                 let limit = if path.is_dir() {
@@ -68,20 +76,47 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
-        Self::parse_with_robot(text, path, None)
+        Self::parse_with(text, path, &[])
+    }
+
+    /// The same with settings laid over the text, one after the other.
+    ///
+    /// # Errors
+    /// As [`Campaign::load_with`].
+    pub fn parse_with(text: &str, path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
+        Self::parse_with_robot(text, path, overlay, None)
     }
 
     /// The same with the text of the robot's file, where that is at hand and the file may not be there.
     ///
     /// # Errors
-    /// As [`Campaign::load`].
+    /// As [`Campaign::load_with`].
     pub fn parse_with_robot(
         text: &str,
         path: &Path,
+        overlay: &[Setting],
         robot: Option<&str>,
     ) -> Result<Self, CampaignError> {
-        let file = toml::from_str(text).map_err(|error| syntax(path, &error))?;
-        validate(file, text, path, robot)
+        let source = Source {
+            path,
+            text,
+            overlay,
+        };
+        let root = ValueDeserializer::from(source.root()?);
+        let file = CampaignFile::deserialize(root).map_err(|error| source.syntax(error))?;
+        validate(file, source, robot)
+    }
+
+    /// To refuse something after the campaign was read.
+    fn check(&self) -> Check<'_> {
+        Check {
+            source: Source {
+                path: &self.path,
+                text: &self.text,
+                overlay: &self.overlay,
+            },
+            channels: Vec::new(),
+        }
     }
 
     /// Flies another number of episodes than the file's.
@@ -89,11 +124,7 @@ impl Campaign {
     /// # Errors
     /// If the sampling design cannot divide so many into equal replicates.
     pub fn set_episodes(&mut self, episodes: u32) -> Result<(), CampaignError> {
-        let check = Check {
-            path: &self.path,
-            text: &self.text,
-            channels: Vec::new(),
-        };
+        let check = self.check();
         check.divides(self.sampling, episodes)?;
         self.episodes = episodes;
         Ok(())

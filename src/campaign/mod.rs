@@ -7,9 +7,11 @@ pub mod file;
 mod kinds;
 pub mod lints;
 mod load;
+mod overlay;
 mod plan;
 mod quantity;
 mod signals;
+mod source;
 mod time;
 mod validate;
 mod validated;
@@ -21,6 +23,7 @@ pub use file::{
     CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind, Link,
     ObserverStart, SamplingScope,
 };
+pub use overlay::{Setting, SettingError};
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
 pub use signals::{Disturbance, Fault, FaultChannels};

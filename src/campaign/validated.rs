@@ -1,6 +1,7 @@
 //! A campaign as the rest of the program sees it: checked and complete.
 
 use super::file::{CouplingCoordinates, DisturbanceKind, IntegralKind, ObserverStart};
+use super::overlay::Setting;
 use super::plan::{Sampling, Stop, Strata};
 use super::quantity::RandomQuantity;
 use super::signals::{Disturbance, Fault};
@@ -25,6 +26,8 @@ pub struct Campaign {
     pub path: PathBuf,
     /// The file's text.
     pub text: String,
+    /// What was laid over it.
+    pub overlay: Vec<Setting>,
     /// Name.
     pub name: String,
     /// Seed of every random number.

@@ -4,6 +4,7 @@ use clap::builder::StyledStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use urts_mc::campaign::Setting;
 
 /// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
 #[derive(Debug, Parser)]
@@ -41,6 +42,7 @@ pub(crate) enum Command {
     #[command(after_help = examples(&[
         "urts-mc run campaigns/smoke.toml",
         "urts-mc run campaigns/uav-paper.toml --episodes 256 --backend cpu --out reports/trial",
+        "urts-mc run campaigns/smoke.toml --set agent.team=2 --set fault.0.onset_s=0 --out reports/early",
         "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
     ]))]
     Run(RunArguments),
@@ -48,6 +50,7 @@ pub(crate) enum Command {
     #[command(after_help = examples(&[
         "urts-mc check campaigns/uav-paper.toml",
         "urts-mc check campaigns/uav-paper.toml --episodes 4096 --json",
+        "urts-mc check campaigns/smoke.toml --set sampling.design=sobol",
     ]))]
     Check(CheckArguments),
     /// Show the gains of a campaign: poles, margins, certificate, checks
@@ -120,6 +123,10 @@ pub(crate) struct Overrides {
     /// Use this seed instead of the campaign's
     #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub(crate) seed: Option<u64>,
+    /// Set a key of the campaign, as its error messages name it, to a TOML
+    /// value; without a value, remove it. Repeatable
+    #[arg(long, value_name = "KEY=VALUE", verbatim_doc_comment)]
+    pub(crate) set: Vec<Setting>,
 }
 
 #[derive(Debug, Args)]
@@ -257,6 +264,15 @@ pub(crate) struct SynthesizeArguments {
     /// gains
     #[arg(long, value_name = "NAME", verbatim_doc_comment, conflicts_with = "campaign", value_parser = ["uav-paper", "uav-physical", "biped-paper"])]
     pub(crate) preset: Option<String>,
+    /// Set a key of the campaign to a TOML value; without
+    /// a value, remove it. Repeatable
+    #[arg(
+        long,
+        value_name = "KEY=VALUE",
+        verbatim_doc_comment,
+        requires = "campaign"
+    )]
+    pub(crate) set: Vec<Setting>,
     /// Print as JSON, in the format of gains.json
     #[arg(long)]
     pub(crate) json: bool,

@@ -87,7 +87,7 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
 
 impl Overrides {
     fn load(&self) -> Result<Campaign, Failure> {
-        let mut campaign = Campaign::load(&self.campaign)?;
+        let mut campaign = Campaign::load_with(&self.campaign, &self.set)?;
         if let Some(episodes) = self.episodes {
             campaign.set_episodes(episodes)?;
         }
@@ -257,7 +257,7 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
     let Some(path) = &arguments.campaign else {
         return synthesize_preset(arguments);
     };
-    let campaign = Campaign::load(path)?;
+    let campaign = Campaign::load_with(path, &arguments.set)?;
     let shown = ProgressLine::of_work("synthesizing gains", false);
     let gains = GainSet::synthesize_or_load(&campaign);
     drop(shown);

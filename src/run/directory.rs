@@ -40,7 +40,7 @@ impl OutputDir {
             match Manifest::read(path) {
                 Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
                     return Err(taken(format!(
-                        "a run of another campaign text ({:?})",
+                        "a run of another campaign text or other settings ({:?})",
                         run.name
                     )));
                 }

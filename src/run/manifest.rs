@@ -2,7 +2,7 @@
 
 use super::error::{MANIFEST, OutputError};
 use crate::backend::cpu::Precision;
-use crate::campaign::{Campaign, CampaignError};
+use crate::campaign::{Campaign, CampaignError, Setting};
 use crate::results::RequirementResult;
 use crate::simulation::Segment;
 use crate::simulation::Times;
@@ -23,10 +23,13 @@ pub struct Manifest {
     pub git_revision: Option<String>,
     /// The campaign file, as it was named.
     pub campaign_path: String,
-    /// BLAKE3 hash of the campaign text.
+    /// BLAKE3 hash of the campaign text, and of the settings laid over it.
     pub campaign_blake3: String,
     /// The campaign text.
     pub campaign: String,
+    /// The settings laid over it with `--set`, in their order; absent if there were none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overlay: Vec<Setting>,
     /// The text of the robot's file, where there are robots.
     pub robot: Option<String>,
     /// Seed that was used: the campaign's, unless it was overridden.
@@ -65,10 +68,17 @@ pub struct Manifest {
 /// The source revision that this program was built from.
 pub(crate) const GIT_REVISION: Option<&str> = option_env!("URTS_MC_GIT_REVISION");
 
-/// The hash that tells one campaign text from another.
+/// The hash that tells one campaign text, with the settings laid over it, from another: that of the text alone if there are none.
 #[must_use]
 pub fn campaign_hash(campaign: &Campaign) -> String {
-    blake3::hash(campaign.text.as_bytes()).to_hex().to_string()
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(campaign.text.as_bytes());
+    for setting in &campaign.overlay {
+        // No campaign text has this byte in it, so that no text looks like another with settings.
+        hasher.update(b"\0");
+        hasher.update(setting.to_string().as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 impl Manifest {
@@ -94,6 +104,7 @@ impl Manifest {
         let mut campaign = Campaign::parse_with_robot(
             &self.campaign,
             Path::new(&self.campaign_path),
+            &self.overlay,
             self.robot.as_deref(),
         )?;
         campaign.seed = self.seed;

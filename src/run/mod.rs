@@ -181,6 +181,7 @@ pub fn run_on(
         campaign_path: campaign.path.display().to_string(),
         campaign_blake3: campaign_hash(campaign),
         campaign: campaign.text.clone(),
+        overlay: campaign.overlay.clone(),
         robot: match &campaign.agent {
             Agent::Uav(_) => None,
             Agent::Biped(biped) => Some(biped.file.text.clone()),

@@ -57,7 +57,13 @@ impl Check<'_> {
                 "use \"full\", or \"limited\" to cut them at the robot's limits",
             ));
         }
-        let beside = |name: &String| self.path.parent().unwrap_or(Path::new("")).join(name);
+        let beside = |name: &String| {
+            self.source
+                .path
+                .parent()
+                .unwrap_or(Path::new(""))
+                .join(name)
+        };
         let path = file.robot.as_ref().map_or(robot::G1_PATH.into(), beside);
         let text = match (text, &file.robot) {
             (Some(text), _) => text.to_string(),

@@ -16,11 +16,11 @@ use super::error::CampaignError;
 use super::file::*;
 use super::quantity::RandomQuantity;
 use super::signals::{Disturbance, Fault};
+use super::source::Source;
 use super::time::Time;
 use super::validated::{Campaign, Control, Initial, Verdict};
 use crate::agent::ActuationKind;
 use crate::agent::Agent;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
@@ -31,13 +31,11 @@ const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
 /// Checks a file as written; `robot` is the text of the robot's file, if it is not to be read.
 pub(super) fn validate(
     file: CampaignFile,
-    text: &str,
-    path: &Path,
+    source: Source<'_>,
     robot: Option<&str>,
 ) -> Result<Campaign, CampaignError> {
     let mut check = Check {
-        path,
-        text,
+        source,
         channels: Vec::new(),
     };
     check.name("name", &file.name)?;
@@ -63,8 +61,9 @@ pub(super) fn validate(
     let strata = check.strata(&file.strata, &file.fault, &fault_names, file.episodes)?;
     let sampling = check.sampling(&file)?;
     Ok(Campaign {
-        path: path.to_path_buf(),
-        text: text.to_string(),
+        path: source.path.to_path_buf(),
+        text: source.text.to_string(),
+        overlay: source.overlay.to_vec(),
         name: file.name.clone(),
         seed: file.seed,
         episodes: file.episodes,

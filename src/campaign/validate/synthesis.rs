@@ -61,7 +61,13 @@ impl Check<'_> {
         };
         let designs = preset.designs().into_iter().map(design);
         let designs = designs.collect::<Result<_, _>>()?;
-        let beside = |file: &str| self.path.parent().unwrap_or(Path::new("")).join(file);
+        let beside = |file: &str| {
+            self.source
+                .path
+                .parent()
+                .unwrap_or(Path::new(""))
+                .join(file)
+        };
         let mut named = Vec::new();
         for (name, entry) in &file.named {
             let key = format!("synthesis.named.{name}");

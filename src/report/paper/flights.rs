@@ -9,7 +9,6 @@ use crate::draw::draw;
 use crate::model::ChannelSample;
 use crate::model::episode::Snapshot;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Steps between two samples: 10 ms.
 const EVERY: u32 = 10;
@@ -47,15 +46,15 @@ pub struct Scenarios {
 }
 
 impl Scenarios {
-    /// Flies the first episode of a campaign in double precision; `path` is where its text is from.
+    /// Flies the first episode of a campaign in double precision.
     ///
     /// # Errors
-    /// If the text is no campaign, if it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
+    /// If it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
     /// and one smoothed square wave, the same on all channels.
-    pub fn fly(text: &str, path: &Path) -> Result<Self, PaperError> {
-        let mut campaign = Campaign::parse(text, path)?;
+    pub fn fly(mut campaign: Campaign) -> Result<Self, PaperError> {
         campaign.controllers = [FTC, PID].map(Into::into).to_vec();
-        let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.into() })?;
+        let path = &campaign.path;
+        let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.clone() })?;
         let gains = GainSet::synthesize_or_load(&campaign)?;
         let trace = |campaign: &Campaign, controller: usize| {
             let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);

@@ -4,6 +4,7 @@ use super::claims::{Claim, claims};
 use super::error::PaperError;
 use super::figures;
 use super::flights::Scenarios;
+use crate::campaign::Campaign;
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::markdown::markdown;
 use crate::run::directory::{OutputDir, OutputFile};
@@ -66,8 +67,9 @@ fn is_ours(dir: &Path) -> bool {
 /// # Errors
 /// If a file cannot be written, or a campaign that is part of the program has become unfit.
 pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
-    let uavs = Scenarios::fly(UAVS, Path::new("campaigns/scenario-a.toml"))?;
-    let robots = Scenarios::fly(ROBOTS, Path::new("campaigns/paper-robots.toml"))?;
+    let fly = |text, path| Scenarios::fly(Campaign::parse(text, Path::new(path))?);
+    let uavs = fly(UAVS, "campaigns/scenario-a.toml")?;
+    let robots = fly(ROBOTS, "campaigns/paper-robots.toml")?;
     let claims = claims(&uavs, &robots);
     let figures = figures::all(&uavs, &robots)?;
     for figure in &figures {

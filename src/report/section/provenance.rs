@@ -21,7 +21,14 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         },
     );
     add("campaign", manifest.campaign_path.clone());
-    add("BLAKE3 of its text", manifest.campaign_blake3.clone());
+    for setting in &manifest.overlay {
+        add("with", format!("--set {setting}"));
+    }
+    let hashed = match manifest.overlay.is_empty() {
+        true => "BLAKE3 of its text",
+        false => "BLAKE3 of its text and settings",
+    };
+    add(hashed, manifest.campaign_blake3.clone());
     add("seed", manifest.seed.to_string());
     add(
         "episodes",
