@@ -51,23 +51,17 @@ kind = "bias"
 channels = "one"
 onset_s = { uniform = [0.05, 0.2] }
 magnitude = 3.0
-
-[verdict]"#;
+"#;
     altered(
         "biped-ground-reaction",
         &[
-            ("[verdict]", more),
-            ("kind = \"biped\"", "kind = \"biped\"\nteam = 3"),
-            ("\"limited\"", &format!("\"{actuation}\"")),
-            (
-                "[1.0, 0.0]]",
-                "[1.0, 0.0]]\n[[reference.agents]]\nstart_s = -2.0\n[[reference.agents]]\nstart_s = -2.7\n[[reference.agents]]\nstart_s = -3.1",
-            ),
-            ("std = 0.001", "std = 0.1"),
-            (
-                "[[disturbance]]\nkind = \"ground-reaction\"\nscale = { ",
-                "error_rate = { normal = { mean = 0.0, std = 0.5 } }\nerror_integral = { normal = { mean = 0.0, std = 0.01 } }\n\n[[disturbance]]\nkind = \"ground-reaction\"\nscale = { ",
-            ),
+            more,
+            "agent.team=3",
+            &format!("agent.actuation={actuation}"),
+            "reference.agents=[{ start_s = -2.0 }, { start_s = -2.7 }, { start_s = -3.1 }]",
+            "initial.error.normal.std=0.1",
+            "initial.error_rate={ normal = { mean = 0.0, std = 0.5 } }",
+            "initial.error_integral={ normal = { mean = 0.0, std = 0.01 } }",
         ],
     )
 }

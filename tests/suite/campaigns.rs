@@ -229,13 +229,11 @@ fn a_fault_that_begins_later_splits_settling_from_recovery() {
     let campaign = altered(
         "scenario-a",
         &[
-            ("amplitude = 0.5\nperiod_s", "amplitude = 0.0\nperiod_s"),
-            ("amplitude = 100.0", "amplitude = 1.0"),
-            ("kappa = 1.0", "kappa = 0.0"),
-            (
-                "[verdict]",
-                "[[fault]]\ntarget = \"actuator\"\nkind = \"bias\"\nchannels = [1]\nonset_s = 8.0\nmagnitude = 400.0\n\n[verdict]\nsettled_error = 0.01",
-            ),
+            "fault.0.amplitude=0.0",
+            "disturbance.0.amplitude=1.0",
+            "coupling.kappa=0.0",
+            "[[fault]]\ntarget = \"actuator\"\nkind = \"bias\"\nchannels = [1]\nonset_s = 8.0\nmagnitude = 400.0",
+            "verdict.settled_error=0.01",
         ],
     );
     let tables = tables(&campaign, Precision::F64);
@@ -258,16 +256,10 @@ fn an_agent_that_diverges_leaves_those_alone_that_are_not_coupled_to_it() {
     let campaign = altered(
         "smoke",
         &[
-            (
-                "kappa = { choice = [0.0, 1.0] }",
-                "kappa = { choice = [0.0, 1e-9] }",
-            ),
-            ("probability = 0.25", "probability = 0.5"),
-            ("channels = \"one\"", "channels = \"all\""),
-            (
-                "magnitude = { uniform = [0.1, 0.5] }",
-                "magnitude = { uniform = [0.1, 0.5] }\n\n[[disturbance]]\nkind = \"constant\"\namplitude = 1e37",
-            ),
+            "coupling.kappa={ choice = [0.0, 1e-9] }",
+            "fault.0.probability=0.5",
+            "fault.0.channels=all",
+            "disturbance.+={ kind = \"constant\", amplitude = 1e37 }",
         ],
     );
     let mut struck = campaign.clone();
@@ -353,7 +345,7 @@ fn the_tables_hold_what_was_flown_the_channel_that_jammed_and_delays_in_whole_st
         )
     };
     let faults = fault("stuck", "") + &fault("delay", "delay_s = { uniform = [0.002, 0.012] }");
-    let campaign = altered("smoke", &[("[verdict]", &format!("{faults}[verdict]"))]);
+    let campaign = altered("smoke", &[&faults]);
     let step_s = campaign.time.step_s;
     let frame = tables(&campaign, Precision::F32)
         .episodes

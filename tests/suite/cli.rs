@@ -10,6 +10,7 @@ mod junit;
 mod notes;
 mod output;
 mod results;
+mod settings;
 mod terminal;
 mod traces;
 mod usage;

@@ -1,10 +1,13 @@
 //! What several test modules need.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex, Once, OnceLock};
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, Wanted, adapters};
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Campaign, Setting};
 use urts_mc::controllers::GainSet;
 use urts_mc::results::tables::Tables;
 
@@ -23,18 +26,76 @@ pub(crate) fn shipped_campaigns() -> Vec<PathBuf> {
 
 /// A shipped campaign.
 pub(crate) fn campaign(name: &str) -> Campaign {
-    Campaign::load(&repository(&format!("campaigns/{name}.toml"))).unwrap()
+    altered(name, &[])
 }
 
-/// A shipped campaign with parts of its text replaced; each part must be there.
-pub(crate) fn altered(name: &str, changes: &[(&str, &str)]) -> Campaign {
-    let path = repository(&format!("campaigns/{name}.toml"));
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{name}.toml does not contain {old:?}");
-        text = text.replace(old, new);
+/// A shipped campaign with changes laid over it, see [`settings`].
+pub(crate) fn altered(name: &str, changes: &[&str]) -> Campaign {
+    altered_file(&format!("campaigns/{name}.toml"), changes)
+}
+
+/// A campaign file of this repository with changes laid over it, see [`settings`].
+pub(crate) fn altered_file(file: &str, changes: &[&str]) -> Campaign {
+    let overlay = settings(changes);
+    named_if_a_test_fails(file, &overlay);
+    Campaign::load_with(&repository(file), &overlay).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Has a failure say which campaigns its test has asked for, as commands that fly them.
+fn named_if_a_test_fails(file: &str, overlay: &[Setting]) {
+    thread_local! {
+        static ASKED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
     }
-    Campaign::parse(&text, &path).unwrap()
+    static TOLD: Once = Once::new();
+    TOLD.call_once(|| {
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            usual(panic);
+            for command in ASKED.with_borrow(Clone::clone) {
+                eprintln!("a campaign of this test: {command}");
+            }
+        }));
+    });
+    let set = overlay.iter().map(|setting| format!(" --set '{setting}'"));
+    let command = format!("urts-mc run {file}{}", set.collect::<String>());
+    ASKED.with_borrow_mut(|asked| {
+        if !asked.contains(&command) {
+            asked.push(command);
+        }
+    });
+}
+
+/// Changes of a campaign: settings, as `--set` takes them, and pieces of a campaign file, such as `[[fault]]` and what belongs to
+/// it, whose lists of tables go behind those of the campaign and whose other keys replace its own.
+pub(crate) fn settings(changes: &[&str]) -> Vec<Setting> {
+    let of_piece = |piece: &str| -> Vec<String> {
+        let piece: toml::Table = piece.parse().unwrap();
+        let of_key = |(key, value)| match value {
+            toml::Value::Array(entries) => entries
+                .into_iter()
+                .map(|entry| format!("{key}.+={entry}"))
+                .collect(),
+            toml::Value::Table(table) => table
+                .into_iter()
+                .map(|(name, value)| format!("{key}.{name}={value}"))
+                .collect(),
+            value => vec![format!("{key}={value}")],
+        };
+        piece.into_iter().flat_map(of_key).collect()
+    };
+    let all = changes.iter().flat_map(|change| {
+        if change.is_empty() || change.starts_with('[') || change.starts_with('\n') {
+            of_piece(change)
+        } else {
+            vec![(*change).to_string()]
+        }
+    });
+    all.map(|setting| {
+        setting
+            .parse()
+            .unwrap_or_else(|error| panic!("{setting}: {error}"))
+    })
+    .collect()
 }
 
 /// A golden file.
@@ -45,9 +106,30 @@ pub(crate) fn golden(name: &str) -> serde_json::Value {
     .unwrap()
 }
 
+/// The gains of a campaign, synthesized or read once for all tests whose campaigns agree in all that gains depend on.
+pub(crate) fn gains(campaign: &Campaign) -> &'static GainSet {
+    type Known = HashMap<String, &'static OnceLock<GainSet>>;
+    static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
+    // What is designed, for which plant, and what the step is checked against.
+    let decides = (
+        (&campaign.synthesis, &campaign.controllers, &campaign.agent),
+        (
+            &campaign.mass_scale,
+            &campaign.inertia_scale,
+            campaign.time.step_s,
+        ),
+    );
+    let own = *KNOWN
+        .lock()
+        .unwrap()
+        .entry(format!("{decides:?}"))
+        .or_insert_with(|| Box::leak(Box::default()));
+    own.get_or_init(|| GainSet::synthesize_or_load(campaign).unwrap())
+}
+
 /// Flies a campaign with its own gains on the widest lanes.
 pub(crate) fn fly(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     Cpu::new(campaign, &gains.loops(), precision, None).fly(0..campaign.episodes, &|_| ())
 }
 

@@ -14,17 +14,14 @@ fn campaign(episodes: u32) -> Campaign {
     altered(
         "smoke",
         &[
-            (
-                "[verdict]",
-                "[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []\n[[require]]\ncontroller = \"ftc\"\nstratum = \"none\"\nfailure_rate_upper_95 = 0.4\n[[require]]\ncontroller = \"ftc\"\nfailure_rate_upper_95 = 0.4\n[verdict]",
-            ),
-            ("team = 3", "team = 1"),
-            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\", \"pid\""),
-            (
-                "[[reference.agents]]\ncenter = [0.0, 0.0, 4.0, 0.0, 0.0, 0.0]\nphase_rad = [0.3, 0.7, 1.1, 0.2, 0.4, 0.6]\n[[reference.agents]]\ncenter = [1.0, 0.5, 5.0, 0.0, 0.0, 0.0]\nphase_rad = [0.6, 1.4, 2.2, 0.4, 0.8, 1.2]\n",
-                "",
-            ),
-            ("episodes = 32", &format!("episodes = {episodes}")),
+            "strata=[{ faults = \"each\" }, { faults = [] }]",
+            "require.+={ controller = \"ftc\", stratum = \"none\", failure_rate_upper_95 = 0.4 }",
+            "require.+={ controller = \"ftc\", failure_rate_upper_95 = 0.4 }",
+            "agent.team=1",
+            "controllers.2=",
+            "reference.agents.2=",
+            "reference.agents.1=",
+            &format!("episodes={episodes}"),
         ],
     )
 }
@@ -210,10 +207,7 @@ fn the_fault_that_hurts_most_is_found_and_what_cannot_be_told_apart_is_named() {
 
 #[test]
 fn without_a_stratum_free_of_faults_the_mildest_is_the_reference() {
-    let campaign = altered(
-        "smoke",
-        &[("[verdict]", "[[strata]]\nfaults = \"each\"\n[verdict]")],
-    );
+    let campaign = altered("smoke", &["strata.+={ faults = \"each\" }"]);
     let scores = scores(&campaign, |_, episode| {
         let fails = episode % 2 == 0;
         (if fails { Status::Diverged } else { Status::Ok }, 0.01)

@@ -14,12 +14,12 @@ use urts_mc::run::{Extras, run};
 use urts_mc::simulation::RunOptions;
 
 fn sampled(design: &str, replicates: u32, episodes: u32) -> Campaign {
-    let text = format!("[sampling]\ndesign = \"{design}\"\nreplicates = {replicates}\n[verdict]");
     altered(
         "smoke",
         &[
-            ("[verdict]", &text),
-            ("episodes = 32", &format!("episodes = {episodes}")),
+            &format!("sampling.design={design}"),
+            &format!("sampling.replicates={replicates}"),
+            &format!("episodes={episodes}"),
         ],
     )
 }
@@ -141,13 +141,7 @@ fn the_parameters_of_a_channels_disturbance_share_a_net() {
 fn designs_leave_alone_what_they_do_not_concern() {
     let first = |campaign: &Campaign| (0..32).map(|k| draw(campaign, k)).collect::<Vec<_>>();
     let plain = altered("smoke", &[]);
-    let named = altered(
-        "smoke",
-        &[(
-            "[verdict]",
-            "[sampling]\ndesign = \"independent\"\n[verdict]",
-        )],
-    );
+    let named = altered("smoke", &["sampling.design=independent"]);
     assert_eq!(first(&plain), first(&named));
     // A longer run of nets begins as a shorter one; a hypercube belongs to its size.
     assert_eq!(
@@ -159,13 +153,11 @@ fn designs_leave_alone_what_they_do_not_concern() {
         first(&sampled("latin-hypercube", 4, 128))
     );
     // Another fault changes nothing of the others.
-    let more = "[[fault]]\ntarget = \"sensor\"\nkind = \"bias\"\nmagnitude = { uniform = [0.0, 0.1] }\n[sampling]";
+    let more =
+        "[[fault]]\ntarget = \"sensor\"\nkind = \"bias\"\nmagnitude = { uniform = [0.0, 0.1] }";
     let with_more = altered(
         "smoke",
-        &[(
-            "[verdict]",
-            &format!("{more}\ndesign = \"sobol\"\nreplicates = 4\n[verdict]"),
-        )],
+        &[more, "sampling={ design = \"sobol\", replicates = 4 }"],
     );
     let mut longer = first(&with_more);
     for agent in longer.iter_mut().flat_map(|episode| &mut episode.agents) {

@@ -1,12 +1,11 @@
 //! The same file, seed and precision give the same bytes, whatever the threads, the width, the order and the length; and one
 //! episode alone gives its row again.
 
-use crate::common::{altered, campaign};
+use crate::common::{altered, campaign, gains};
 use std::fs;
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
@@ -19,7 +18,6 @@ fn everything() -> [Campaign; 2] {
 }
 
 fn uavs() -> Campaign {
-    let noise = "[verdict]";
     let more = r#"[[disturbance]]
 kind = "constant"
 amplitude = { normal = { mean = 0.0, std = 5.0 } }
@@ -43,16 +41,8 @@ kind = "bias"
 channels = [1, 5]
 onset_s = { uniform = [0.5, 2.0] }
 magnitude = 3.0
-
-[verdict]"#;
-    altered(
-        "smoke",
-        &[
-            (noise, more),
-            ("duration_s = 6.0", "duration_s = 4.5"),
-            ("episodes = 32", "episodes = 37"),
-        ],
-    )
+"#;
+    altered("smoke", &[more, "time.duration_s=4.5", "episodes=37"])
 }
 
 fn robots() -> Campaign {
@@ -91,19 +81,15 @@ kind = "bias"
 channels = [1, 11]
 onset_s = { uniform = [0.5, 2.0] }
 magnitude = 1.0
-
-[verdict]"#;
+"#;
     altered(
         "biped-ground-reaction",
         &[
-            ("[verdict]", more),
-            ("kind = \"biped\"", "kind = \"biped\"\nteam = 2"),
-            (
-                "[1.0, 0.0]]",
-                "[1.0, 0.0]]\n[[reference.agents]]\n[[reference.agents]]\nstart_s = 0.3",
-            ),
-            ("duration_s = 9.0", "duration_s = 4.5"),
-            ("episodes = 512", "episodes = 37"),
+            more,
+            "agent.team=2",
+            "reference.agents=[{}, { start_s = 0.3 }]",
+            "time.duration_s=4.5",
+            "episodes=37",
         ],
     )
 }
@@ -119,7 +105,7 @@ fn fly(
     threads: usize,
     precision: Precision,
 ) -> Vec<EpisodeResult> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let cpu = Cpu::new(campaign, &gains.loops(), precision, simd);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -228,7 +214,7 @@ fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
 #[test]
 fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
     for campaign in everything() {
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+        let gains = gains(&campaign);
         let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
         let all = cpu.fly(0..37, &|_| ());
         assert!(same(&cpu.fly(5..23, &|_| ())[..], &all[5..23]));

@@ -9,10 +9,9 @@ mod plant;
 mod vortex;
 mod wind;
 
-use crate::common::repository;
+use crate::common::{gains, repository, settings};
 use urts_mc::backend::cpu::{Cpu, Precision};
-use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
+use urts_mc::campaign::{Campaign, CampaignError};
 use urts_mc::model::ChannelSample;
 
 const STEP_S: f64 = 0.002;
@@ -49,16 +48,18 @@ error = 0.05
 
 /// A campaign with some more of its file.
 fn campaign(more: &str) -> Campaign {
-    Campaign::parse(
-        &format!("{BASE}{more}"),
-        &repository("campaigns/faults.toml"),
-    )
-    .unwrap()
+    parsed(more, &[]).unwrap()
+}
+
+/// The same with changes laid over it.
+fn parsed(more: &str, changes: &[&str]) -> Result<Campaign, CampaignError> {
+    let path = repository("campaigns/faults.toml");
+    Campaign::parse_with(&format!("{BASE}{more}"), &path, &settings(changes))
 }
 
 /// What every agent and channel shows at every step, `[step][agent][channel]`.
 fn flight(campaign: &Campaign) -> Vec<Vec<Vec<ChannelSample>>> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
     let (_, snapshots) = cpu.trace(0, 0, 1);
     assert_eq!(snapshots.len() as u32, campaign.time.steps + 1);

@@ -1,12 +1,11 @@
 //! Flights whose GPU fails: what is kept, what is said, what the CPU takes over.
 
-use crate::common::{altered, gpu_or_skip};
+use crate::common::{altered, gains, gpu_or_skip};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{Gpu, GpuError, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;
 use urts_mc::run::{Extras, Progress, run_on};
@@ -15,13 +14,7 @@ use urts_mc::simulation::{Backend, Engine, RunOptions, Segment, Simulation, Simu
 
 /// 24 short episodes.
 fn short() -> Campaign {
-    altered(
-        "smoke",
-        &[
-            ("episodes = 32", "episodes = 24"),
-            ("duration_s = 6.0", "duration_s = 4.5"),
-        ],
-    )
+    altered("smoke", &["episodes=24", "time.duration_s=4.5"])
 }
 
 fn in_batches_of_eight(backend: Backend) -> RunOptions {
@@ -42,7 +35,7 @@ fn fly_and_lose(
     lost_after: u32,
 ) -> (Result<Simulation, SimulationError>, u32) {
     let campaign = short();
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     let told = AtomicU32::new(0);
     let flight = fly(
         &campaign,
@@ -84,7 +77,7 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others()
 
     // Both backends give nearly the same numbers, so the table is that of one flight.
     let campaign = short();
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     let whole = fly(
         &campaign,
         &gains,
@@ -182,7 +175,7 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
 #[test]
 fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let campaign = short();
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
     let mut flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
     let check = |flight: &Simulation| {
@@ -204,8 +197,8 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
 fn a_flight_whose_every_difference_grows_is_left_out_of_the_cross_check() {
     // Under pid-tuned, loops of the episodes 118 and 119 oscillate and never repeat. In the first it is a limit of rate and lost
     // messages that keep one there: 1e-6 rad between two number formats are 0.2 rad two seconds later. The verdicts are the same.
-    let campaign = altered("uav-faults", &[("episodes = 1000", "episodes = 120")]);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let campaign = altered("uav-faults", &["episodes=120"]);
+    let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
     let flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
     let leg = Segment {

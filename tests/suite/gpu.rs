@@ -21,7 +21,7 @@ mod mutations;
 mod parity;
 mod spans;
 
-use crate::common::{altered, repository};
+use crate::common::{altered, altered_file, settings};
 use urts_mc::agent::Agent;
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning};
@@ -31,31 +31,26 @@ use urts_mc::synthesis::LoopGains;
 /// Gains of every controller on every channel group.
 type Gains = Vec<Vec<LoopGains>>;
 
-/// A campaign of tests/suite/gpu with parts of its text replaced; each part must be there.
-fn replaced(name: &str, changes: &[(&str, &str)]) -> Campaign {
-    let path = repository(&format!("tests/suite/gpu/{name}.toml"));
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{name}.toml does not contain {old:?}");
-        text = text.replace(old, new);
-    }
-    Campaign::parse(&text, &path).unwrap()
+/// A campaign of tests/suite/gpu with changes laid over it.
+fn gpu_campaign(name: &str, changes: &[&str]) -> Campaign {
+    altered_file(&format!("tests/suite/gpu/{name}.toml"), changes)
 }
 
 /// Everything at once.
-fn mixed(changes: &[(&str, &str)]) -> Campaign {
-    replaced("mixed", changes)
+fn mixed(changes: &[&str]) -> Campaign {
+    gpu_campaign("mixed", changes)
 }
 
 /// Jets of rotors and nothing else, between UAVs whose paths cross.
-fn jets(changes: &[(&str, &str)]) -> Campaign {
+fn jets(changes: &[&str]) -> Campaign {
     let brief = [
-        ("episodes = 256", "episodes = 8"),
-        ("duration_s = 20.0", "duration_s = 4.0"),
+        "episodes=8",
+        "time.duration_s=4.0",
         // Who is above another, and who beside, changes all the time.
-        ("1.0, 0.1, 0.1, 0.3]", "1.0, 0.0, 0.0, 0.0]"),
-        ("0.5, 0.3, 0.5", "0.5, 2.5, 0.5"),
-        ("observer = \"zero\"", JETS),
+        "reference.amplitude=[2.0, 1.5, 1.0, 0.0, 0.0, 0.0]",
+        "reference.frequency_rad_s.2=2.5",
+        "initial.observer=",
+        JETS,
     ];
     altered("no-fault", &[&brief[..], changes].concat())
 }
@@ -74,11 +69,12 @@ length_m = 0.3
 ";
 
 /// A link and actuators that fail together, under a sampled controller whose commands come late by half its period.
-fn linked(changes: &[(&str, &str)]) -> Campaign {
+fn linked(changes: &[&str]) -> Campaign {
     let own = [
-        ("episodes = 256", "episodes = 8"),
-        ("duration_s = 20.0", "duration_s = 2.0"),
-        ("observer = \"zero\"", LINKED),
+        "episodes=8",
+        "time.duration_s=2.0",
+        "initial.observer=",
+        LINKED,
     ];
     altered("no-fault", &[&own[..], changes].concat())
 }
@@ -124,8 +120,8 @@ rate = { uniform = [200.0, 600.0] }
 ";
 
 /// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are not.
-fn mixed_biped(changes: &[(&str, &str)]) -> Campaign {
-    let mut campaign = replaced("mixed_biped", changes);
+fn mixed_biped(changes: &[&str]) -> Campaign {
+    let mut campaign = gpu_campaign("mixed_biped", changes);
     if let Agent::Biped(biped) = &mut campaign.agent {
         let joints = biped.robot.legs.iter_mut().flat_map(|leg| &mut leg.joints);
         for (j, joint) in (1_u8..).zip(joints) {
@@ -136,40 +132,40 @@ fn mixed_biped(changes: &[(&str, &str)]) -> Campaign {
 }
 
 /// [`mixed`] with thrust along the body axis.
-fn mixed_thrust(changes: &[(&str, &str)]) -> Campaign {
+fn mixed_thrust(changes: &[&str]) -> Campaign {
     let thrust = [
-        ("actuation = \"full\"", "actuation = \"thrust\""),
-        ("uav-paper", "uav-physical"),
+        "agent.actuation=thrust",
+        "synthesis.preset=uav-physical",
         // Roll and pitch follow from the force, and x and y have no actuators.
-        ("0.1, 0.1, 0.3]", "0.0, 0.0, 0.3]"),
-        ("0.5, 0.4, 0.2]", "0.0, 0.0, 0.2]"),
-        ("0.2, 0.4, 0.6]", "0.0, 0.0, 0.6]"),
-        ("channels = [1, 3, 5] ", "channels = [3, 4, 5] "),
-        ("channels = \"one\" # loss", "channels = [3]"),
+        "reference.amplitude=[2.0, 1.5, 1.0, 0.0, 0.0, 0.3]",
+        "reference.frequency_rad_s=[0.4, 0.5, 0.3, 0.0, 0.0, 0.2]",
+        "reference.agents.1.phase_rad=[0.3, 0.7, 1.1, 0.0, 0.0, 0.6]",
+        "fault.0.channels=[3]",
+        "fault.2.channels=[3, 4, 5]",
         // What a UAV with one thrust can bear.
-        ("uniform = [30.0, 100.0]", "uniform = [1.0, 5.0]"),
-        ("std = 5.0", "std = 0.3"),
-        ("std = 0.1", "std = 0.03"),
-        ("std = 0.02", "std = 0.005"),
-        (
-            "log_uniform = [0.0001, 0.002]",
-            "log_uniform = [0.00001, 0.0002]",
-        ),
-        ("std = 0.005\n", "std = 0.0005\n"),
-        ("uniform = [-6.0, 6.0]", "uniform = [-0.3, 0.3]"),
-        ("uniform = [0.1, 0.6]", "uniform = [0.02, 0.1]"),
-        ("choice = [0.0, 1.0, 60.0]", "choice = [0.0, 0.05, 20.0]"),
+        "initial.error.normal.std=0.03",
+        "initial.error_rate.normal.std=0.03",
+        "coupling.kappa.choice=[0.0, 0.05, 20.0]",
+        "disturbance.0.amplitude.uniform=[1.0, 5.0]",
+        "disturbance.1.amplitude.normal.std=0.3",
+        "fault.2.magnitude.uniform=[-0.3, 0.3]",
+        "fault.3.magnitude.normal.std=0.005",
+        "fault.4.amplitude.uniform=[0.02, 0.1]",
+        "fault.5.std.log_uniform=[0.00001, 0.0002]",
+        "fault.6.std=0.0005",
     ];
     mixed(&[&thrust, changes].concat())
 }
 
 /// The same with another number of UAVs, all of which have one reference.
 fn team_of(base: &Campaign, team: usize) -> Campaign {
-    let (head, rest) = base.text.split_once("[[reference.agents]]").unwrap();
-    let (_, tail) = rest.split_once("[synthesis]").unwrap();
-    let text = format!("{head}center = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]\n\n[synthesis]{tail}");
-    let text = text.replace("team = 3", &format!("team = {team}"));
-    let campaign = Campaign::parse(&text, &base.path).unwrap();
+    let larger = settings(&[
+        &format!("agent.team={team}"),
+        "reference.agents=",
+        "reference.center=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0]",
+    ]);
+    let overlay = [&base.overlay[..], &larger].concat();
+    let campaign = Campaign::parse_with(&base.text, &base.path, &overlay).unwrap();
     assert_eq!(campaign.team, team);
     campaign
 }
@@ -181,19 +177,19 @@ const LONGEST: Tuning = Tuning {
 };
 
 /// Changes of [`mixed`]: 600 steps, so that there are two flushes of the metrics and 150 blocks of noise, and a rest.
-const BRIEF: [(&str, &str); 5] = [
-    ("duration_s = 3.0", "duration_s = 1.2"),
-    ("uniform = [0.4, 2.0]", "uniform = [0.4, 1.1]"),
-    ("uniform = [0.5, 2.0]", "uniform = [0.5, 1.1]"),
-    ("1.0007", "0.7007"),
-    ("1.5003", "0.5003"),
+const BRIEF: [&str; 5] = [
+    "time.duration_s=1.2",
+    "fault.0.onset_s.uniform=[0.4, 1.1]",
+    "fault.2.onset_s=0.7007",
+    "fault.4.onset_s.choice=[0.0, 0.5003]",
+    "fault.6.onset_s.uniform=[0.5, 1.1]",
 ];
 
 /// Changes of [`mixed`]: the same signals on all channels, so that the axes share their shaders; these take long to compile.
-const ALIKE: [(&str, &str); 3] = [
-    ("channels = [3]", "channels = \"all\""),
-    ("channels = [1, 3, 5] ", "channels = \"all\" "),
-    ("channels = [1, 2, 6]", "channels = \"all\""),
+const ALIKE: [&str; 3] = [
+    "fault.1.channels=all",
+    "fault.2.channels=all",
+    "fault.5.channels=all",
 ];
 
 /// Flies a campaign batch by batch.

@@ -27,6 +27,7 @@
 //! | `lanes` | elementary functions, phases and selections on every lane type |
 //! | `model` | order of the integration, limits, noise, draws |
 //! | `campaigns` | every shipped campaign; what the paper claims |
+//! | `overlay` | settings laid over a campaign file |
 //! | `paper` | the paper's figures and claims |
 //! | `readme` | what the README tells its readers to type |
 //! | `report` | what the report of a run says, and what a browser makes of it |
@@ -63,6 +64,7 @@ mod lanes;
 mod lapack;
 mod leg;
 mod model;
+mod overlay;
 mod paper;
 mod path;
 mod ranking;

@@ -1,15 +1,14 @@
 //! The pieces of the episode loop: order of the integration, limits, noise, draws.
 
-use crate::common::{altered, campaign, fly};
+use crate::common::{altered, campaign, fly, gains};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
 
 /// The largest |e| difference at the end of a smooth episode between two steps.
 fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {
     let end = |campaign: &Campaign| {
-        let gains = GainSet::synthesize_or_load(campaign).unwrap();
+        let gains = gains(campaign);
         let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
         let (_, snapshots) = cpu.trace(0, 0, campaign.time.steps);
         let last = snapshots.last().unwrap();
@@ -30,26 +29,19 @@ fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {
 #[test]
 fn the_integration_is_of_fourth_order_on_a_smooth_episode_and_faults_on_the_step_grid_keep_it() {
     for (name, changes) in [
-        (
-            "scenario-a",
-            vec![("duration_s = 20.0", "duration_s = 4.0")],
-        ),
+        ("scenario-a", &["time.duration_s=4.0"][..]),
         (
             "scenario-b",
-            vec![
-                ("duration_s = 20.0", "duration_s = 4.0"),
-                ("onset_s = 8.0", "onset_s = 1.0"),
-                ("onset_s = 12.0", "onset_s = 2.0"),
+            &[
+                "time.duration_s=4.0",
+                "fault.0.onset_s=1.0",
+                "fault.1.onset_s=2.0",
             ],
         ),
     ] {
-        let with_step = |step: &str| {
-            let mut all = changes.clone();
-            all.push(("step_s = 0.001", step));
-            altered(name, &all)
-        };
-        let fine = with_step("step_s = 0.0005");
-        let errors = ["step_s = 0.008", "step_s = 0.004"]
+        let with_step = |step: &str| altered(name, &[changes, &[step]].concat());
+        let fine = with_step("time.step_s=0.0005");
+        let errors = ["time.step_s=0.008", "time.step_s=0.004"]
             .map(|step| end_difference(&with_step(step), &fine));
         let order = (errors[0] / errors[1]).log2();
         println!(
@@ -67,14 +59,12 @@ fn limits_cut_the_command_and_are_counted() {
     let limited = altered(
         "scenario-b",
         &[
-            (
-                "actuation = \"thrust\"",
-                "actuation = \"thrust\"\nmax_torque_n_m = 2.0\nmax_thrust_n = 15.0",
-            ),
-            ("duration_s = 20.0", "duration_s = 13.0"),
+            "agent.max_torque_n_m=2.0",
+            "agent.max_thrust_n=15.0",
+            "time.duration_s=13.0",
         ],
     );
-    let free = altered("scenario-b", &[("duration_s = 20.0", "duration_s = 13.0")]);
+    let free = altered("scenario-b", &["time.duration_s=13.0"]);
     for precision in [Precision::F64, Precision::F32] {
         let channels = |campaign: &Campaign| {
             fly(campaign, precision).remove(0).outcomes[0][0]
@@ -111,28 +101,19 @@ fn the_observer_is_told_of_the_limits() {
         altered(
             "scenario-b",
             &[
-                (
-                    "actuation = \"thrust\"",
-                    &format!("actuation = \"thrust\"\nmax_torque_n_m = {limit}"),
-                ),
-                ("duration_s = 20.0", "duration_s = 14.0"),
-                ("magnitude = 0.2", "magnitude = 0.0"),
-                ("magnitude = 0.3", "magnitude = 0.0"),
-                (
-                    "amplitude = [2.0, 2.0, 2.0, 0.2, 0.2, 0.2]",
-                    "amplitude = 0.0",
-                ),
-                (
-                    "amplitude = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]",
-                    "amplitude = 0.0",
-                ),
-                ("amplitude = 0.1\nperiod_s", "amplitude = 0.0\nperiod_s"),
-                ("kappa = 0.05", "kappa = 0.0"),
+                &format!("agent.max_torque_n_m={limit}"),
+                "time.duration_s=14.0",
+                "fault.0.magnitude=0.0",
+                "fault.1.magnitude=0.0",
+                "disturbance.0.amplitude=0.0",
+                "disturbance.1.amplitude=0.0",
+                "fault.2.amplitude=0.0",
+                "coupling.kappa=0.0",
             ],
         )
     };
     let campaign = quiet("3.0");
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
     let (outcomes, snapshots) = cpu.trace(0, 0, 10);
     assert!(
@@ -150,15 +131,9 @@ fn the_observer_is_told_of_the_limits() {
 
 #[test]
 fn noise_is_standard_normal_white_and_held_over_a_step() {
-    let text = [
-        (
-            "kind = \"smoothed-square\"\namplitude = 0.5\nperiod_s = 10.0\nsmoothing = 0.1",
-            "kind = \"noise\"\nstd = 1.0",
-        ),
-        ("duration_s = 20.0", "duration_s = 4.0"),
-    ];
-    let campaign = altered("scenario-a", &text);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let noise = "fault.0={ target = \"sensor\", kind = \"noise\", std = 1.0 }";
+    let campaign = altered("scenario-a", &[noise, "time.duration_s=4.0"]);
+    let gains = gains(&campaign);
     let trace = |precision, simd| {
         Cpu::new(&campaign, &gains.loops(), precision, simd)
             .trace(0, 1, 1)
@@ -233,14 +208,8 @@ fn draws_follow_their_distributions_and_who_shares_them() {
     let campaign = altered(
         "uav-paper",
         &[
-            (
-                "error_integral = 0.0",
-                "error_integral = { log_uniform = [0.01, 1.0], per = \"agent\" }",
-            ),
-            (
-                "inertia_scale = { uniform = [0.8, 1.2] }",
-                "inertia_scale = { truncated_normal = { mean = 1.0, std = 0.2, low = 0.9, high = 1.3 }, per = \"agent\" }",
-            ),
+            "initial.error_integral={ log_uniform = [0.01, 1.0], per = \"agent\" }",
+            "agent.inertia_scale={ truncated_normal = { mean = 1.0, std = 0.2, low = 0.9, high = 1.3 }, per = \"agent\" }",
         ],
     );
     let episodes: Vec<_> = (0..2000).map(|episode| draw(&campaign, episode)).collect();
@@ -308,13 +277,7 @@ fn draws_follow_their_distributions_and_who_shares_them() {
 #[test]
 fn an_unused_coupling_and_absent_faults_change_nothing() {
     // A loss of nothing, a disturbance of nothing and a coupling of nothing must not change a bit.
-    let base = altered(
-        "smoke",
-        &[
-            ("kappa = { choice = [0.0, 1.0] }", "kappa = 0.0"),
-            ("magnitude = { uniform = [0.1, 0.5] }", "magnitude = 0.0"),
-        ],
-    );
+    let base = altered("smoke", &["coupling.kappa=0.0", "fault.0.magnitude=0.0"]);
     let mut bare = base.clone();
     bare.faults.remove(0);
     let outcomes = |campaign: &Campaign| {

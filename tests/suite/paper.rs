@@ -1,6 +1,6 @@
 //! The paper's figures and claims.
 
-use crate::common::repository;
+use crate::common::{altered, campaign, repository};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -78,15 +78,9 @@ fn val_the_claims_have_the_numbers_of_an_independent_program_and_the_shipped_fig
     assert_eq!(shipped, text, "urts-mc paper writes it anew");
 }
 
-/// Scenario A with parts of its text replaced; each part must be there.
-fn uavs(changes: &[(&str, &str)]) -> Scenarios {
-    let path = repository("campaigns/scenario-a.toml");
-    let mut text = fs::read_to_string(&path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{old:?}");
-        text = text.replace(old, new);
-    }
-    Scenarios::fly(&text, &path).unwrap()
+/// Scenario A with changes laid over it.
+fn uavs(changes: &[&str]) -> Scenarios {
+    Scenarios::fly(altered("scenario-a", changes)).unwrap()
 }
 
 /// What became of the UAV's claim with these words.
@@ -98,7 +92,7 @@ fn of_uav(claims: &[Claim], words: &str) -> Option<bool> {
 #[test]
 fn a_flight_that_diverges_decides_nothing_but_that_it_is_not_stable() {
     // So far off, the coupling x o x grows faster than any feedback.
-    let lost = uavs(&[("error = 0.1", "error = 1e4")]);
+    let lost = uavs(&["initial.error=1e4"]);
     for claim in claims(&lost, &lost) {
         let expected = claim.claim.contains("stays stable").then_some(false);
         assert_eq!(claim.holds, expected, "{}: {}", claim.claim, claim.measured);
@@ -110,9 +104,9 @@ fn a_flight_that_diverges_decides_nothing_but_that_it_is_not_stable() {
 #[test]
 fn flights_without_initial_errors_do_not_tell_how_soon_these_are_over() {
     let calm = uavs(&[
-        ("error = 0.1", "error = 0.0"),
-        ("error_integral = 0.05", "error_integral = 0.0"),
-        ("error_rate = -0.1", "error_rate = 0.0"),
+        "initial.error=0.0",
+        "initial.error_integral=0.0",
+        "initial.error_rate=0.0",
     ]);
     let claims = claims(&calm, &calm);
     assert_eq!(of_uav(&claims, "tracking errors are in"), None);
@@ -125,10 +119,10 @@ fn flights_without_initial_errors_do_not_tell_how_soon_these_are_over() {
 fn what_the_campaign_says_reaches_the_claims() {
     // Hardly a disturbance: the force is the weight, and no sine is to be seen. A small fault of another period.
     let mild = uavs(&[
-        ("amplitude = 100.0", "amplitude = 0.1"),
-        ("amplitude = 0.5", "amplitude = 0.02"),
-        ("period_s = 10.0", "period_s = 8.0"),
-        ("kappa = 1.0", "kappa = 0.0"),
+        "disturbance.0.amplitude=0.1",
+        "fault.0.amplitude=0.02",
+        "fault.0.period_s=8.0",
+        "coupling.kappa=0.0",
     ]);
     let claims = claims(&mild, &mild);
     assert_eq!(of_uav(&claims, "total force"), Some(true));
@@ -142,8 +136,7 @@ fn what_the_campaign_says_reaches_the_claims() {
 
 #[test]
 fn a_campaign_of_which_the_claims_cannot_be_asked_is_refused() {
-    let path = repository("campaigns/smoke.toml");
-    let error = Scenarios::fly(&fs::read_to_string(&path).unwrap(), &path).unwrap_err();
+    let error = Scenarios::fly(campaign("smoke")).unwrap_err();
     let text = error.to_string();
     assert!(
         text.contains("smoke.toml") && text.contains("one sine"),

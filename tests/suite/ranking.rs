@@ -254,9 +254,9 @@ fn what_is_ranked_is_what_the_tables_show() {
 #[test]
 fn a_constant_is_no_condition_however_many_it_strikes() {
     let struck = [
-        ("channels = \"one\"", "channels = \"all\""),
-        ("magnitude = { uniform = [0.1, 0.5] }", "magnitude = 0.1"),
-        ("onset_s = { uniform = [2.5, 4.0] }", "onset_s = 2.7001"),
+        "fault.0.channels=all",
+        "fault.0.magnitude=0.1",
+        "fault.0.onset_s=2.7001",
     ];
     let campaign = altered("smoke", &struck);
     let scores = tables(&campaign, Precision::F32).scores;

@@ -1,11 +1,10 @@
 //! The closed loop against trajectories that an independent program integrated (tests/golden/scenarios.json says where they
 //! are from): scenario A fully actuated, scenario B with thrust, filter and actuator faults.
 
-use crate::common::{altered, golden};
+use crate::common::{altered, gains, golden};
 use serde_json::Value;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::model::ChannelSample;
 use urts_mc::model::episode::Snapshot;
 
@@ -29,10 +28,13 @@ const QUANTITIES: [Quantity; 7] = [
     ("u", |shown| shown.u),
 ];
 
+/// The setting that takes the gains from the reference data.
+fn golden_gains(preset: &str) -> String {
+    format!("synthesis.gains=\"../tests/golden/gains-{preset}.json\"")
+}
+
 fn with_golden_gains(name: &str, preset: &str) -> Campaign {
-    let line = format!("preset = \"{preset}\"");
-    let gains = format!("{line}\ngains = \"../tests/golden/gains-{preset}.json\"");
-    altered(name, &[(&line, &gains)])
+    altered(name, &[&golden_gains(preset)])
 }
 
 /// The trajectory of the first episode under a controller, every 10 ms.
@@ -42,7 +44,7 @@ fn trajectory(
     precision: Precision,
     simd: Option<Simd>,
 ) -> Vec<Snapshot> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let index = campaign
         .controllers
         .iter()
@@ -188,48 +190,17 @@ fn val_the_scenarios_with_our_own_gains_stay_within_1e_4() {
 #[test]
 fn the_scenario_comparison_notices_small_changes_of_the_model() {
     // A hair more than the tolerance on single constants of each part of the model must show.
-    for (name, preset, old, new) in [
-        ("scenario-a", "uav-paper", "kappa = 1.0", "kappa = 1.0001"),
-        (
-            "scenario-a",
-            "uav-paper",
-            "frequency_rad_s = 3.0",
-            "frequency_rad_s = 3.00001",
-        ),
-        (
-            "scenario-a",
-            "uav-paper",
-            "smoothing = 0.1",
-            "smoothing = 0.10001",
-        ),
-        (
-            "scenario-a",
-            "uav-paper",
-            "actuation = \"full\"",
-            "actuation = \"full\"\nangular_drag_n_m_s = 0.013",
-        ),
-        (
-            "scenario-b",
-            "uav-physical",
-            "onset_s = 12.0",
-            "onset_s = 12.001",
-        ),
-        (
-            "scenario-b",
-            "uav-physical",
-            "magnitude = 0.3",
-            "magnitude = 0.3001",
-        ),
-        (
-            "scenario-b",
-            "uav-physical",
-            "actuation = \"thrust\"",
-            "actuation = \"thrust\"\ncommand_filter_rad_s = 20.01",
-        ),
+    let (a, b) = (("scenario-a", "uav-paper"), ("scenario-b", "uav-physical"));
+    for ((name, preset), new) in [
+        (a, "coupling.kappa=1.0001"),
+        (a, "disturbance.0.frequency_rad_s=3.00001"),
+        (a, "fault.0.smoothing=0.10001"),
+        (a, "agent.angular_drag_n_m_s=0.013"),
+        (b, "fault.1.onset_s=12.001"),
+        (b, "fault.1.magnitude=0.3001"),
+        (b, "agent.command_filter_rad_s=20.01"),
     ] {
-        let line = format!("preset = \"{preset}\"");
-        let gains = format!("{line}\ngains = \"../tests/golden/gains-{preset}.json\"");
-        let campaign = altered(name, &[(&line, &gains), (old, new)]);
+        let campaign = altered(name, &[&golden_gains(preset), new]);
         let trajectory = trajectory(&campaign, "ftc", Precision::F64, None);
         let worst = differences(&golden("scenarios.json")[name]["ftc"], &trajectory)
             .into_iter()

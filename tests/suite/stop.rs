@@ -1,10 +1,9 @@
 //! Early stop: the level of what a run claims when it ends, and the same end whatever flies it.
 
-use crate::common::{altered, gpu_or_skip};
+use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, Goal};
-use urts_mc::controllers::GainSet;
 use urts_mc::random::philox::{Address, Stream};
 use urts_mc::results::scores::Status;
 use urts_mc::results::{summarise, summary_table};
@@ -20,9 +19,9 @@ fn stopping(keys: &str, episodes: u32) -> Campaign {
     altered(
         "smoke",
         &[
-            ("[verdict]", &format!("[stop]\n{keys}\n[verdict]")),
-            ("duration_s = 6.0", "duration_s = 4.5"),
-            ("episodes = 32", &format!("episodes = {episodes}")),
+            &format!("[stop]\n{keys}"),
+            "time.duration_s=4.5",
+            &format!("episodes={episodes}"),
         ],
     )
 }
@@ -138,7 +137,7 @@ fn failing() -> Campaign {
 
 fn flown(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
     let campaign = failing();
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     fly(&campaign, &gains, options, gpu, &|_| ()).unwrap()
 }
 

@@ -17,20 +17,16 @@ share = 3
 name = "both"
 faults = ["lost thrust", "sensor smoothed-square"]
 share = 2
-
-[verdict]"#;
+"#;
 
 /// The smoke campaign, one stratum per fault, without any, with both, and mixed.
 fn screening(episodes: u32) -> Campaign {
     altered(
         "smoke",
         &[
-            ("[verdict]", SCREENING),
-            (
-                "target = \"actuator\"",
-                "name = \"lost thrust\"\ntarget = \"actuator\"",
-            ),
-            ("episodes = 32", &format!("episodes = {episodes}")),
+            SCREENING,
+            "fault.0.name=\"lost thrust\"",
+            &format!("episodes={episodes}"),
         ],
     )
 }
@@ -78,8 +74,7 @@ fn faults_without_a_name_have_that_of_target_and_kind_with_a_number_where_it_is_
         fault(""),
         fault("name = \"öl im Getriebe\""),
     ];
-    let text = all.concat() + "[verdict]";
-    let campaign = altered("smoke", &[("[verdict]", &text)]);
+    let campaign = altered("smoke", &[&all.concat()]);
     let names: Vec<&str> = campaign.faults.iter().map(|fault| &*fault.name).collect();
     assert_eq!(
         names,
@@ -189,10 +184,7 @@ fn what_a_stratum_makes_certain_is_not_ranked_as_if_it_were_drawn() {
     assert!(n("fault0_magnitude").is_some_and(|n| (12..36).contains(&n)));
     assert_eq!(n("mass_scale"), Some(96));
     // Without a stratum that draws, the number of struck agents is never left to chance.
-    let certain = altered(
-        "smoke",
-        &[("[verdict]", "[[strata]]\nfaults = \"each\"\n[verdict]")],
-    );
+    let certain = altered("smoke", &["strata.+={ faults = \"each\" }"]);
     let ranking = rank(&certain, &tables(&certain, Precision::F32).scores);
     assert!(ranking.iter().all(|own| own.condition != "fault0_agents"));
     assert!(
@@ -204,21 +196,14 @@ fn what_a_stratum_makes_certain_is_not_ranked_as_if_it_were_drawn() {
 
 /// The smoke campaign, whose loss of effectiveness differs from agent to agent.
 fn one_by_one(more: &str) -> Campaign {
-    let blocks = r#"agents = [
+    let blocks = r#"fault.0.agents=[
     { probability = 1.0, channels = [2, 3], onset_s = 1.0, duration_s = 0.5, magnitude = 0.25 },
     { probability = 0.0 },
     { channels = "one", ramp_s = { uniform = [0.2, 0.4] } },
 ]"#;
     altered(
         "smoke",
-        &[
-            ("channels = \"one\"", "duration_s = 2.0"),
-            (
-                "magnitude = { uniform = [0.1, 0.5] }",
-                &format!("magnitude = {{ uniform = [0.1, 0.5] }}\n{blocks}"),
-            ),
-            ("[verdict]", &format!("{more}\n[verdict]")),
-        ],
+        &["fault.0.channels=", "fault.0.duration_s=2.0", blocks, more],
     )
 }
 
@@ -265,12 +250,7 @@ fn a_stratum_spares_whom_a_fault_never_strikes() {
 #[test]
 fn a_background_is_in_all_strata_and_none_of_its_own() {
     let more = "[[fault]]\nname = \"noise\"\ntarget = \"sensor\"\nkind = \"noise\"\nstd = 0.001\nprobability = 0.5\nbackground = true\n";
-    let with = |strata: &str| {
-        altered(
-            "smoke",
-            &[("[verdict]", &format!("{more}{strata}[verdict]"))],
-        )
-    };
+    let with = |strata: &str| altered("smoke", &[&format!("{more}{strata}")]);
     let strata = "[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []\n";
     let (divided, whole) = (with(strata), with(""));
     let names = divided.strata.all().iter().map(|own| own.name.to_string());

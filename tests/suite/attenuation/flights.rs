@@ -1,9 +1,8 @@
 //! (24) on the flights of campaigns: where it applies, where it does not and why, and what it says.
 
-use crate::common::{altered, campaign};
+use crate::common::{altered, campaign, gains};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::draw::draw;
 use urts_mc::simulation::attenuation::{
     Attenuation, AttenuationAnalysis, Attenuations, NotApplicable, is_smooth,
@@ -11,7 +10,7 @@ use urts_mc::simulation::attenuation::{
 
 /// What (24) says about an episode under a controller.
 fn found(campaign: &Campaign, controller: &str, episode: u32) -> Attenuations {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let names = &campaign.controllers;
     let index = names.iter().position(|name| name == controller).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
@@ -59,13 +58,15 @@ fn scenario_a_stays_far_below_its_certified_level_and_24_holds() {
 #[test]
 fn the_attenuation_of_scenario_a_converges_with_the_step() {
     let at = |step: &str| {
-        let changes = [
-            ("step_s = 0.001", step),
-            ("duration_s = 20.0", "duration_s = 8.0"),
-        ];
+        let changes = [step, "time.duration_s=8.0"];
         levels(&found(&altered("scenario-a", &changes), "ftc", 0))
     };
-    let [coarse, middle, fine] = ["step_s = 0.004", "step_s = 0.002", "step_s = 0.001"].map(at);
+    let [coarse, middle, fine] = [
+        "time.step_s=0.004",
+        "time.step_s=0.002",
+        "time.step_s=0.001",
+    ]
+    .map(at);
     let apart = |a: &[f64], b: &[f64]| {
         let relative = a.iter().zip(b).map(|(a, b)| (a / b - 1.0).abs());
         relative.fold(0.0, f64::max)
@@ -81,13 +82,11 @@ fn the_attenuation_of_scenario_a_converges_with_the_step() {
 fn robots_start_in_steps_that_resolve_their_fastest_pole() {
     // Their fastest pole is -500 1/s, the campaign's step 2 ms; with initial errors f1 moves as fast.
     let short = [
-        ("duration_s = 10.0", "duration_s = 3.0"),
-        ("team = 4", "team = 1"),
-        ("[[reference.agents]]\nstart_s = 0.2\n", ""),
-        ("[[reference.agents]]\nstart_s = 0.4\n", ""),
-        ("[[reference.agents]]\nstart_s = 0.6\n", ""),
+        "time.duration_s=3.0",
+        "agent.team=1",
+        "reference.agents=[{ start_s = 0.0 }]",
     ];
-    let finer = [&short[..], &[("step_s = 0.002", "step_s = 0.0005")]].concat();
+    let finer = [&short[..], &["time.step_s=0.0005"]].concat();
     let own = all(&found(&altered("biped-paper", &short), "ftc", 1));
     let fine = all(&found(&altered("biped-paper", &finer), "ftc", 1));
     for (own, fine) in own.iter().zip(&fine) {
@@ -112,7 +111,7 @@ fn a_calm_flight_from_far_off_exceeds_the_level_while_24_holds() {
 
 #[test]
 fn pids_and_thrust_have_no_theorem() {
-    let short = [("duration_s = 20.0", "duration_s = 14.0")];
+    let short = ["time.duration_s=14.0"];
     let a = altered("scenario-a", &short);
     assert_eq!(obstacle(&found(&a, "pid", 0)), NotApplicable::NoEstimate);
     let b = altered("scenario-b", &short);
@@ -120,9 +119,8 @@ fn pids_and_thrust_have_no_theorem() {
 }
 
 /// The smoke campaign, where a fault strikes for sure.
-fn struck(changes: &[(&str, &str)]) -> Campaign {
-    let surely = ("probability = 0.25", "probability = 1.0");
-    altered("smoke", &[&[surely], changes].concat())
+fn struck(changes: &[&str]) -> Campaign {
+    altered("smoke", &[&["fault.0.probability=1.0"], changes].concat())
 }
 
 #[test]
@@ -143,9 +141,8 @@ fn a_fault_that_strikes_later_rules_out_its_own_channel_only() {
 
 #[test]
 fn a_fault_is_smooth_if_it_is_there_from_the_start_or_never() {
-    let onset = "onset_s = { uniform = [2.5, 4.0] }";
     for (given, smooth) in [("0.0", true), ("0.002", false), ("5.998", false)] {
-        let campaign = struck(&[(onset, &format!("onset_s = {given}"))]);
+        let campaign = struck(&[&format!("fault.0.onset_s={given}")]);
         let drawn = draw(&campaign, 0);
         let (fault, own) = (&campaign.faults[0], &drawn.agents[0].faults[0]);
         assert_eq!(is_smooth(fault, own, campaign.time), smooth, "{given}");
@@ -153,7 +150,7 @@ fn a_fault_is_smooth_if_it_is_there_from_the_start_or_never() {
         let (fault, own) = (&campaign.faults[1], &drawn.agents[0].faults[1]);
         assert!(is_smooth(fault, own, campaign.time));
     }
-    let from_the_start = struck(&[(onset, "onset_s = 0.0")]);
+    let from_the_start = struck(&["fault.0.onset_s=0.0"]);
     assert!(
         all(&found(&from_the_start, "ftc", 0))
             .iter()
@@ -163,13 +160,13 @@ fn a_fault_is_smooth_if_it_is_there_from_the_start_or_never() {
 
 #[test]
 fn noise_and_the_grounds_reaction_are_not_smooth() {
-    let onset = "onset_s = { uniform = [2.5, 4.0] }\n";
     let noise = [
-        ("target = \"actuator\"", "target = \"sensor\""),
-        ("\"loss-of-effectiveness\"", "\"noise\""),
-        ("channels = \"one\"", "channels = \"all\""),
-        ("magnitude = { uniform = [0.1, 0.5] }", "std = 0.001"),
-        (onset, ""),
+        "fault.0.target=sensor",
+        "fault.0.kind=noise",
+        "fault.0.channels=all",
+        "fault.0.magnitude=",
+        "fault.0.std=0.001",
+        "fault.0.onset_s=",
     ];
     let (entry, kind) = (0, "noise");
     let rough = obstacle(&found(&struck(&noise), "ftc", 0));
@@ -185,8 +182,8 @@ fn noise_and_the_grounds_reaction_are_not_smooth() {
 
 #[test]
 fn turbulence_leaves_the_theorem_to_the_attitude_that_it_does_not_touch() {
-    let wind = "[[disturbance]]\nkind = \"dryden\"\nintensity = \"light\"\naltitude_m = 30.0\nairspeed_m_s = 10.0\ngain_n_s_m = 0.5\n\n[verdict]";
-    let found = found(&altered("scenario-a", &[("[verdict]", wind)]), "ftc", 0);
+    let wind = "[[disturbance]]\nkind = \"dryden\"\nintensity = \"light\"\naltitude_m = 30.0\nairspeed_m_s = 10.0\ngain_n_s_m = 0.5";
+    let found = found(&altered("scenario-a", &[wind]), "ftc", 0);
     let (kind, entry) = ("dryden", 1);
     for channels in &found {
         let (position, attitude) = channels.split_at(3);
@@ -208,11 +205,13 @@ fn turbulence_leaves_the_theorem_to_the_attitude_that_it_does_not_touch() {
 #[test]
 fn limits_that_cut_are_seen() {
     let changes = [
-        ("team = 4", "team = 4\nactuation = \"limited\""),
-        ("duration_s = 8.0", "duration_s = 3.0"),
-        ("kappa = 1.0", "kappa = 0.0"),
-        ("amplitude = 10.0", "amplitude = 200.0"),
-        ("amplitude = 0.0", "amplitude = 5.0"),
+        "agent.actuation=limited",
+        "time.duration_s=3.0",
+        "coupling.kappa=0.0",
+        "disturbance.0.agents.0.amplitude=200.0",
+        "disturbance.0.agents.1.amplitude=5.0",
+        "disturbance.0.agents.2.amplitude=5.0",
+        "disturbance.0.agents.3.amplitude=5.0",
     ];
     let found = found(&altered("scenario-biped", &changes), "ftc", 0);
     let cut = |found: &Result<_, _>| matches!(found, Err(NotApplicable::OtherFeedback { .. }));
@@ -223,10 +222,7 @@ fn limits_that_cut_are_seen() {
 
 #[test]
 fn a_flight_that_leaves_the_numbers_is_not_judged() {
-    let unstable = [
-        ("amplitude = 100.0", "amplitude = 1e9"),
-        ("duration_s = 20.0", "duration_s = 8.0"),
-    ];
+    let unstable = ["disturbance.0.amplitude=1e9", "time.duration_s=8.0"];
     let found = found(&altered("scenario-a", &unstable), "ftc", 0);
     let lost = |found: &Result<_, _>| matches!(found, Err(NotApplicable::NotFinite { .. }));
     assert!(found.iter().flatten().any(lost), "{found:?}");

@@ -2,13 +2,13 @@
 //! tables, no reduced operations, the full matrices of (19) and (20).
 
 use super::everything;
+use crate::common::gains;
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 use urts_mc::agent::Agent;
 use urts_mc::agent::robot::dynamics::{bias_force, mass_matrix};
 use urts_mc::agent::robot::{JOINTS, Joint, LEG_JOINTS, Robot};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget};
-use urts_mc::controllers::GainSet;
 use urts_mc::draw::{AgentDraw, Episode, draw};
 use urts_mc::model::ChannelSample;
 use urts_mc::synthesis::LoopGains;
@@ -60,7 +60,7 @@ impl World {
         Self {
             robot: biped.robot.clone(),
             episode: draw(&campaign, index),
-            gains: GainSet::synthesize_or_load(&campaign).unwrap().loops()[0][0],
+            gains: gains(&campaign).loops()[0][0],
             campaign,
         }
     }
@@ -297,7 +297,7 @@ const QUANTITIES: [Quantity; 10] = [
 
 /// Of each quantity the largest difference from the formulas over all robots, joints and steps, relative to its largest value.
 fn differences(campaign: &Campaign, world: &World) -> Vec<(&'static str, f64)> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
     let snapshots = cpu.trace(world.episode.index, 0, 1).1;
     let expected = world.fly();

@@ -1,12 +1,11 @@
 //! The lane types among each other, and a robot that diverges among others.
 
 use super::everything;
-use crate::common::altered;
+use crate::common::{altered, gains};
 use std::ops::Range;
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::draw::{Episode, draw};
 use urts_mc::model::episode::{AgentOutcome, Controller, Model};
 use urts_mc::model::lanes::Lane;
@@ -19,7 +18,7 @@ fn flown(
     simd: Option<Simd>,
     episodes: Range<u32>,
 ) -> Vec<EpisodeResult> {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     Cpu::new(campaign, &gains.loops(), precision, simd).fly(episodes, &|_| ())
 }
 
@@ -51,7 +50,11 @@ fn eight_and_sixteen_robots_side_by_side_give_the_same_bits() {
 #[test]
 fn single_precision_stays_within_the_contract_on_walks() {
     // The paper's robots, without an initial error that no torque of theirs could correct.
-    let mut campaign = altered("biped-paper", &[("std = 0.1", "std = 0.005")]);
+    let slightly = [
+        "initial.error.normal.std=0.005",
+        "initial.error_rate.normal.std=0.005",
+    ];
+    let mut campaign = altered("biped-paper", &slightly);
     campaign.controllers.truncate(1);
     let episodes = 0..4;
     let double = flown(&campaign, Precision::F64, None, episodes.clone());
@@ -84,7 +87,7 @@ fn single_precision_stays_within_the_contract_on_walks() {
 /// Outcomes with the first robot of the episode `wild` thrown out of its course, and without that; in that episode the others
 /// do not feel it.
 fn with_and_without<L: Lane>(campaign: &Campaign, wild: usize) -> [Vec<Vec<AgentOutcome>>; 2] {
-    let gains = GainSet::synthesize_or_load(campaign).unwrap();
+    let gains = gains(campaign);
     let controller = Controller::new(&gains.loops()[0]);
     let model = Model::new(campaign);
     let mut episodes: Vec<Episode> = (0..L::WIDTH as u32).map(|k| draw(campaign, k)).collect();

@@ -10,11 +10,11 @@ fn hurried(actuation: &str) -> Campaign {
     altered(
         "biped-ground-reaction",
         &[
-            ("\"limited\"", &format!("\"{actuation}\"")),
-            ("episodes = 512", "episodes = 4"),
-            ("duration_s = 9.0", "duration_s = 2.0"),
-            ("std = 0.001", "std = 0.1"),
-            ("\"pid\", \"pid-tuned\"", "\"pid\""),
+            &format!("agent.actuation={actuation}"),
+            "episodes=4",
+            "time.duration_s=2.0",
+            "initial.error.normal.std=0.1",
+            "controllers.2=",
         ],
     )
 }

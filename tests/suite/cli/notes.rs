@@ -84,13 +84,9 @@ fn a_walk_or_path_that_outlasts_the_episode_is_told_with_both_times() {
     };
     let takes_s = walks[0].walk.duration_s();
     let lasting = |duration: &str, start: &str| {
-        let duration = format!("duration_s = {duration}");
-        let points = format!("kind = \"walk\"\nstart_s = {start}");
-        let changes = [
-            ("duration_s = 9.0", &*duration),
-            ("kind = \"walk\"", &*points),
-        ];
-        cautions(&altered(name, &changes))
+        let duration = format!("time.duration_s={duration}");
+        let start = format!("reference.start_s={start}");
+        cautions(&altered(name, &[&duration, &start]))
     };
     let said = lasting("4.0", "0");
     let shown = (100.0 * takes_s).ceil() / 100.0;
@@ -113,10 +109,7 @@ fn a_walk_or_path_that_outlasts_the_episode_is_told_with_both_times() {
     assert!(lasting("4.0", &format!("{:?}", 4.0 - enough)).is_empty());
 
     assert!(cautions(&campaign("waypoints")).is_empty());
-    let said = cautions(&altered(
-        "waypoints",
-        &[("duration_s = 30.0", "duration_s = 10.0")],
-    ));
+    let said = cautions(&altered("waypoints", &["time.duration_s=10.0"]));
     assert!(
         said[0].starts_with("reference: the path of agent ")
             && said[0].ends_with(" s, the episode 10 s; its end is not reached"),

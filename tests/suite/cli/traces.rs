@@ -7,22 +7,16 @@ use urts_mc::run::replay::{Replay, replay};
 
 /// A short flight of three UAVs whose y is struck from 1 s to 1.5 s, and nothing else.
 fn struck() -> Place {
-    let path = repository("campaigns/smoke.toml");
-    let text = fs::read_to_string(path).unwrap();
-    let (before, rest) = text.split_once("[[fault]]").unwrap();
-    let verdict = &rest[rest.find("[verdict]").unwrap()..];
-    let fault = "[[fault]]\ntarget = \"actuator\"\nkind = \"bias\"\nchannels = [2]\nonset_s = 1.0\nduration_s = 0.5\nmagnitude = 40.0\n\n";
-    let mut text = format!("{before}{fault}{verdict}");
-    for (old, new) in [
-        ("episodes = 32", "episodes = 2"),
-        ("duration_s = 6.0", "duration_s = 2.0"),
-        ("settle_s = 2.0", "settle_s = 0.5"),
+    let place = Place::smoke(&[]);
+    let mut run = vec!["run", "c.toml", "--out", "out", "--episodes", "2"];
+    for setting in [
+        "time.duration_s=2.0",
+        "time.settle_s=0.5",
+        "fault=[{ target = \"actuator\", kind = \"bias\", channels = [2], onset_s = 1.0, duration_s = 0.5, magnitude = 40.0 }]",
     ] {
-        assert!(text.contains(old), "{old:?}");
-        text = text.replace(old, new);
+        run.extend(["--set", setting]);
     }
-    let place = Place::with(&text);
-    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    place.succeeds(&run);
     place
 }
 
@@ -271,17 +265,11 @@ fn the_figures_of_an_earlier_run_are_removed_by_a_new_one() {
 #[test]
 fn a_robot_shows_its_walk_and_itself() {
     let path = repository("campaigns/biped-ground-reaction.toml");
-    let mut text = fs::read_to_string(path).unwrap();
-    for (old, new) in [
-        ("episodes = 512", "episodes = 1"),
-        ("duration_s = 9.0", "duration_s = 4.0"),
-    ] {
-        assert!(text.contains(old), "{old:?}");
-        text = text.replace(old, new);
-    }
-    let place = Place::with(&text);
+    let place = Place::with(&fs::read_to_string(path).unwrap());
+    let short = ["--episodes", "1", "--set", "time.duration_s=4.0"];
+    let run = [&["run", "c.toml", "--out", "out"], &short[..]].concat();
     // The walk takes longer than that, which is noted.
-    assert_eq!(place.program(&["run", "c.toml", "--out", "out"]).code, 0);
+    assert_eq!(place.program(&run).code, 0);
     let flown = replay(&place.path("out"), 0, "ftc", None).unwrap();
     place.succeeds(&["replay", "out", "--episode", "0"]);
     let page = place.read("out/replay-0-ftc.html");

@@ -1,9 +1,8 @@
 //! Faults of one episode leave those beside it in a block alone.
 
-use crate::common::repository;
+use crate::common::{gains, repository};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 
 #[test]
 fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {
@@ -11,7 +10,7 @@ fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {
         let path = repository(&format!("tests/suite/gpu/{name}.toml"));
         let mut campaign = Campaign::load(&path).unwrap();
         campaign.episodes = 11;
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+        let gains = gains(&campaign).loops();
         let digits = |precision, simd, episodes| {
             let cpu = Cpu::new(&campaign, &gains, precision, simd);
             let flown = cpu.fly(episodes, &|_| ()).into_iter();

@@ -2,7 +2,7 @@
 //! limits of rate spelled out for every stage.
 
 use super::{AMPLITUDE_M, DRAG_N_S_M, FREQUENCY_RAD_S, MASS_KG, STEP_S, X, campaign, flight};
-use urts_mc::controllers::GainSet;
+use crate::common::gains;
 use urts_mc::synthesis::LoopGains;
 
 const ONSET: usize = 150;
@@ -227,7 +227,7 @@ fn simulate(gains: &LoopGains, between: Between) -> Vec<State> {
 /// The largest difference of e between a flight and the formulas, m.
 fn difference(more: &str, between: Between) -> f64 {
     let campaign = campaign(more);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops()[0][0];
+    let gains = gains(&campaign).loops()[0][0];
     let states = simulate(&gains, between);
     let flown = flight(&campaign);
     assert_eq!(states.len(), flown.len());

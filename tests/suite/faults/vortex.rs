@@ -1,10 +1,9 @@
 //! The jets of rotors: the force against its formula, and what they leave alone.
 
-use super::{BASE, DRAG_N_S_M, MASS_KG, flight, near};
-use crate::common::repository;
+use super::{DRAG_N_S_M, MASS_KG, flight, near, parsed};
+use crate::common::{gains, repository};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
-use urts_mc::campaign::{Campaign, DisturbanceKind};
-use urts_mc::controllers::GainSet;
+use urts_mc::campaign::{Campaign, CampaignError, DisturbanceKind};
 use urts_mc::draw::draw;
 use urts_mc::model::ChannelSample;
 use urts_mc::simulation::attenuation::obstacle;
@@ -13,21 +12,24 @@ const Z: usize = 2;
 
 /// A team of three whose paths cross each other in height and sideways, with some more of its file.
 fn team(more: &str) -> Campaign {
-    parsed(BASE, more).unwrap()
+    parsed_team(more, &[]).unwrap()
 }
 
-fn parsed(base: &str, more: &str) -> Result<Campaign, urts_mc::campaign::CampaignError> {
-    let blocks: String = [(-0.1, 0.2, 0.0), (0.3, -0.1, 2.0), (0.2, 0.1, 4.0)]
-        .map(|(x_m, z_m, turned_rad)| {
-            format!(
-                "[[reference.agents]]\ncenter = [{x_m:?}, 0.1, {z_m:?}, 0.0, 0.0, 0.0]\nphase_rad = [0.1, {turned_rad:?}, {turned_rad:?}, 0.0, 0.0, 0.0]\n"
-            )
-        })
-        .concat();
-    let text = format!("{base}{blocks}{more}")
-        .replace("team = 2", "team = 3")
-        .replace("0.7, 1.0, 1.0, 1.0]", "6.0, 1.0, 1.0, 1.0]");
-    Campaign::parse(&text, &repository("campaigns/faults.toml"))
+fn parsed_team(more: &str, changes: &[&str]) -> Result<Campaign, CampaignError> {
+    let blocks = [(-0.1, 0.2, 0.0), (0.3, -0.1, 2.0), (0.2, 0.1, 4.0)].map(|(x_m, z_m, turned_rad)| {
+        format!(
+            "reference.agents.+={{ center = [{x_m:?}, 0.1, {z_m:?}, 0.0, 0.0, 0.0], phase_rad = [0.1, {turned_rad:?}, {turned_rad:?}, 0.0, 0.0, 0.0] }}"
+        )
+    });
+    let [first, second, third] = &blocks;
+    let own = [
+        "agent.team=3",
+        "reference.frequency_rad_s.2=6.0",
+        first,
+        second,
+        third,
+    ];
+    parsed(more, &[&own[..], changes].concat())
 }
 
 /// Force, radius and length of each agent.
@@ -99,9 +101,7 @@ fn val_at_its_length_and_radius_a_jet_has_the_force_that_is_named() {
             "[[reference.agents]]\namplitude = 0.0\ncenter = [0.0, 0.0, 5.0, 0.0, 0.0, 0.0]\n[[reference.agents]]\namplitude = 0.0\ncenter = [0.0, {beside_m:?}, {:?}, 0.0, 0.0, 0.0]\n[[disturbance]]\nkind = \"rotor-vortex\"\nforce_n = 7.0\nradius_m = 0.8\nlength_m = 1.5\n",
             5.0 - below_m
         );
-        let text = format!("{BASE}{more}").replace("error = 0.05", "error = 0.0");
-        let path = repository("campaigns/faults.toml");
-        let flown = flight(&Campaign::parse(&text, &path).unwrap());
+        let flown = flight(&parsed(&more, &["initial.error=0.0"]).unwrap());
         [0, 1].map(|agent: usize| found_n(&flown[0][agent][Z]))
     };
     for (beside_m, below_m, expected) in [
@@ -124,14 +124,9 @@ fn val_at_its_length_and_radius_a_jet_has_the_force_that_is_named() {
 
 #[test]
 fn val_under_thrust_jets_add_the_same_force() {
-    let base = BASE
-        .replace(
-            "mass_scale = 1.0",
-            "mass_scale = 1.0\nactuation = \"thrust\"",
-        )
-        .replace("uav-paper", "uav-physical");
+    let thrust = ["agent.actuation=thrust", "synthesis.preset=uav-physical"];
     let [with, without] = [of_all(), String::new()].map(|more| {
-        let campaign = parsed(&base, &more).unwrap();
+        let campaign = parsed_team(&more, &thrust).unwrap();
         flight(&campaign).swap_remove(0)
     });
     let mut most = 0.0_f64;
@@ -158,7 +153,7 @@ fn axes_in_one_group_give_the_same_bits_as_each_on_its_own() {
     let mut together = Campaign::load(&path).unwrap();
     together.episodes = 5;
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
-    let gains = GainSet::synthesize_or_load(&together).unwrap().loops();
+    let gains = gains(&together).loops();
     let flown = |campaign: &Campaign, precision, simd| {
         let flown = Cpu::new(campaign, &gains, precision, simd).fly(0..5, &|_| ());
         format!(
@@ -194,14 +189,11 @@ fn who_diverged_blows_at_nobody() {
     // The first is hit by the jet of the second, whose position leaves the numbers, or is there from the start.
     let lost = |error: &str, beyond: bool| {
         let more = "[[disturbance]]\nkind = \"rotor-vortex\"\nforce_n = { choice = [0.0, 5.0] }\nradius_m = 1.0\nlength_m = 1.0\n";
-        let text = format!(
-            "{BASE}[[initial.agents]]\nerror = 0.0\n[[initial.agents]]\nerror = {error}\n{more}"
-        );
-        let path = repository("campaigns/faults.toml");
-        let campaign = Campaign::parse(&text, &path).unwrap();
+        let starts = format!("initial.agents=[{{ error = 0.0 }}, {{ error = {error} }}]");
+        let campaign = parsed(more, &[&starts]).unwrap();
         let forces = |index: u32| draw(&campaign, index).agents[0].disturbances[0][0][0];
         assert!((0..4).any(|k| forces(k) == 0.0) && (0..4).any(|k| forces(k) == 5.0));
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+        let gains = gains(&campaign);
         for precision in [Precision::F64, Precision::F32] {
             let cpu = Cpu::new(&campaign, &gains.loops(), precision, None);
             for (index, flown) in (0..).zip(cpu.fly(0..4, &|_| ())) {
@@ -231,54 +223,45 @@ fn who_diverged_blows_at_nobody() {
 fn jets_are_refused_where_they_mean_nothing() {
     let jet = "[[disturbance]]\nkind = \"rotor-vortex\"\n";
     let whole = format!("{jet}force_n = 2.0\nradius_m = 0.5\nlength_m = 1.0\n");
-    assert!(parsed(BASE, &whole).is_ok());
+    assert!(parsed_team(&whole, &[]).is_ok());
     let cases = [
         (
-            "radius_m = 0.5",
-            "radius_m = 0.0",
+            "disturbance.0.radius_m=0.0",
             "disturbance[0].radius_m",
             "at least 1e-3",
         ),
         (
-            "length_m = 1.0",
-            "length_m = { uniform = [-1.0, 1.0] }",
+            "disturbance.0.length_m={ uniform = [-1.0, 1.0] }",
             "disturbance[0].length_m",
             "at least 1e-3",
         ),
         (
-            "force_n = 2.0",
-            "force_n = -2.0",
+            "disturbance.0.force_n=-2.0",
             "disturbance[0].force_n",
             "must not be negative",
         ),
         (
-            "force_n = 2.0\n",
-            "",
+            "disturbance.0.force_n=",
             "disturbance[0].force_n",
             "this kind needs it",
         ),
         (
-            "force_n = 2.0",
-            "force_n = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]",
+            "disturbance.0.force_n=[1.0, 1.0, 1.0, 1.0, 1.0, 1.0]",
             "disturbance[0].force_n",
             "a quantity of the agent",
         ),
         (
-            "force_n = 2.0",
-            "force_n = 2.0\namplitude = 1.0",
+            "disturbance.0.amplitude=1.0",
             "disturbance[0].amplitude",
             "force_n, radius_m, length_m",
         ),
     ];
-    for (right, wrong, key, limit) in cases {
-        let error = parsed(BASE, &whole.replace(right, wrong))
-            .unwrap_err()
-            .to_string();
+    for (wrong, key, limit) in cases {
+        let error = parsed_team(&whole, &[wrong]).unwrap_err().to_string();
         assert!(error.contains(key) && error.contains(limit), "{error}");
     }
-    let path = repository("campaigns/faults.toml");
-    let alone = format!("{BASE}{whole}").replace("team = 2", "team = 1");
-    let error = Campaign::parse(&alone, &path).unwrap_err().to_string();
+    let alone = parsed(&whole, &["agent.team=1"]);
+    let error = alone.unwrap_err().to_string();
     assert!(
         error.contains("nobody's jet") && error.contains("raise agent.team"),
         "{error}"

@@ -1,6 +1,6 @@
 //! Wind: the force of a gust at every step, and variance and spectrum of turbulence.
 
-use super::{DRAG_N_S_M, MASS_KG, campaign, flight, near, time_s};
+use super::{DRAG_N_S_M, MASS_KG, campaign, flight, near, parsed, time_s};
 use urts_mc::model::ChannelSample;
 
 /// The force on a channel of translation whose command acts as it is wanted.
@@ -32,12 +32,8 @@ fn val_a_gust_is_one_turn_of_a_cosine() {
 /// Forces of turbulence on the three axes, `[axis][step]`: eight UAVs over 60 s.
 fn turbulence() -> Vec<Vec<Vec<f64>>> {
     let more = "[[disturbance]]\nkind = \"dryden\"\nintensity = \"moderate\"\naltitude_m = 6.0\nairspeed_m_s = 20.0\ngain_n_s_m = 1.5\n";
-    let text = format!("{}{more}", super::BASE)
-        .replace("duration_s = 1.0", "duration_s = 60.0")
-        .replace("step_s = 0.002", "step_s = 0.005")
-        .replace("team = 2", "team = 8");
-    let path = crate::common::repository("campaigns/faults.toml");
-    let flown = flight(&urts_mc::campaign::Campaign::parse(&text, &path).unwrap());
+    let long = ["time.duration_s=60.0", "time.step_s=0.005", "agent.team=8"];
+    let flown = flight(&parsed(more, &long).unwrap());
     let agents = 0..8;
     agents
         .map(|agent| {

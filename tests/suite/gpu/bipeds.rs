@@ -3,15 +3,14 @@
 use super::agreement::{Expected, TWIN};
 use super::parity::{agreement, followed};
 use super::{LONGEST, mixed_biped};
-use crate::common::{altered, gpu_or_skip};
+use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::Tuning;
-use urts_mc::controllers::GainSet;
 use urts_mc::simulation::cross_check::cross_check;
 use urts_mc::simulation::{Backend, RunOptions, fly};
 
-/// One controller of [`mixed_biped`].
-const FTC: (&str, &str) = ("\"ftc\", \"pid\"", "\"ftc\"");
+/// One controller.
+const FTC: &str = "controllers=[\"ftc\"]";
 
 #[test]
 fn val_everything_at_once_agrees_for_bipeds_within_their_limits() {
@@ -24,7 +23,7 @@ fn val_everything_at_once_agrees_for_bipeds_within_their_limits() {
 
 #[test]
 fn val_everything_at_once_agrees_for_bipeds_without_limits() {
-    let campaign = mixed_biped(&[("\"limited\"", "\"full\""), FTC]);
+    let campaign = mixed_biped(&["agent.actuation=full", FTC]);
     let Some([double, single]) = agreement(&campaign) else {
         return;
     };
@@ -38,20 +37,18 @@ fn val_bipeds_that_fly_well_under_both_controllers_agree() {
     let campaign = altered(
         "biped-paper",
         &[
-            ("episodes = 1024", "episodes = 9"),
-            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\", \"pid\""),
-            ("duration_s = 10.0", "duration_s = 0.6"),
-            ("settle_s = 2.0", "settle_s = 0.2"),
-            ("start_s = 0.0", "start_s = -3.0"),
-            ("uniform = [5.0, 15.0]", "uniform = [0.1, 0.3]"),
-            ("std = 0.1", "std = 0.001"),
-            ("uniform = [0.01, 0.1]", "uniform = [0.0001, 0.001]"),
-            ("max_error = 0.5 ", "max_error = 2.0 "),
-            ("max_rmse = 0.25", "max_rmse = 1.0"),
-            (
-                "[[require]]\ncontroller = \"ftc\"\nfailure_rate_upper_95 = 0.02",
-                "",
-            ),
+            "episodes=9",
+            "controllers.2=",
+            "time.duration_s=0.6",
+            "time.settle_s=0.2",
+            "reference.agents.0.start_s=-3.0",
+            "initial.error.normal.std=0.001",
+            "initial.error_rate.normal.std=0.001",
+            "disturbance.0.amplitude.uniform=[0.1, 0.3]",
+            "fault.0.amplitude.uniform=[0.0001, 0.001]",
+            "verdict.max_error=2.0",
+            "verdict.max_rmse=1.0",
+            "require=",
         ],
     );
     let Some([double, _]) = agreement(&campaign) else {
@@ -65,11 +62,11 @@ fn val_another_robot_agrees() {
     let campaign = altered(
         "biped-berkeley",
         &[
-            ("episodes = 128", "episodes = 4"),
-            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
-            ("duration_s = 10.0", "duration_s = 0.6"),
-            ("settle_s = 2.0", "settle_s = 0.2"),
-            ("kind = \"walk\"", "kind = \"walk\"\nstart_s = -2.0"),
+            "episodes=4",
+            FTC,
+            "time.duration_s=0.6",
+            "time.settle_s=0.2",
+            "reference.start_s=-2.0",
         ],
     );
     let Some([double, _]) = agreement(&campaign) else {
@@ -85,17 +82,17 @@ fn val_a_team_of_42_bipeds_agrees_though_its_references_take_turns_on_the_device
     let campaign = altered(
         "biped-ground-reaction",
         &[
-            ("episodes = 512", "episodes = 1"),
-            ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
-            ("duration_s = 9.0", "duration_s = 0.9"),
-            ("step_s = 0.002", "step_s = 0.001"),
-            ("settle_s = 1.0", "settle_s = 0.1"),
-            ("kind = \"biped\"", "kind = \"biped\"\nteam = 42"),
-            ("kind = \"walk\"", "kind = \"walk\"\nstart_s = -2.0"),
+            "episodes=1",
+            FTC,
+            "time.duration_s=0.9",
+            "time.step_s=0.001",
+            "time.settle_s=0.1",
+            "agent.team=42",
+            "reference.start_s=-2.0",
         ],
     );
     assert!(campaign.time.steps > 831);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     let flown = super::fly(&gpu, &campaign, &gains, LONGEST);
     let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&flown);
     let summary = agreed.unwrap();
@@ -113,7 +110,7 @@ fn val_trajectories_of_bipeds_agree_at_every_sample_and_end_as_flights_do() {
 fn a_run_of_bipeds_passes_its_cross_check() {
     let Some(gpu) = gpu_or_skip() else { return };
     let campaign = mixed_biped(&[FTC]);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let gains = gains(&campaign);
     let options = RunOptions {
         backend: Backend::Gpu { adapter: None },
         tuning: Tuning::default(),

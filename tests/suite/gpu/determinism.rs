@@ -1,22 +1,23 @@
 //! The same bits, whatever the batch, the span of steps, the order and the company.
 
-use super::{ALIKE, BRIEF, Gains, fly, fly_all, linked, mixed, mixed_biped, replaced};
-use crate::common::gpu_or_skip;
+use super::{ALIKE, BRIEF, Gains, fly, fly_all, gpu_campaign, linked, mixed, mixed_biped};
+use crate::common::{gains, gpu_or_skip};
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::gpu::{GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 
 /// Everything at once, short: 600 steps are two flushes of the metrics and 150 blocks of noise, and something is left over.
-fn short(episodes: &str, controllers: &str) -> (Campaign, Gains) {
+fn short(episodes: u32, controllers: &str) -> (Campaign, Gains) {
+    let episodes = format!("episodes={episodes}");
+    let controllers = format!("controllers=[{controllers}]");
     let own = [
-        ("episodes = 80", episodes),
-        ("\"ftc\", \"pid\", \"pid-tuned\"", controllers),
+        &*episodes,
+        &*controllers,
         // Strong enough for some to leave the numbers.
-        ("[0.0, 1.0, 60.0]", "[0.0, 1.0, 400.0]"),
+        "coupling.kappa.choice=[0.0, 1.0, 400.0]",
     ];
     let campaign = mixed(&[&BRIEF[..], &ALIKE, &own].concat());
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     (campaign, gains)
 }
 
@@ -28,7 +29,7 @@ pub(super) fn digits(flown: &[EpisodeResult]) -> Vec<String> {
 #[test]
 fn neither_batches_nor_spans_of_steps_change_a_bit() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let (campaign, gains) = short("episodes = 70", "\"ftc\"");
+    let (campaign, gains) = short(70, "\"ftc\"");
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 70);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
@@ -43,7 +44,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
         assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
     }
     // A shorter run, in single episodes or in single steps, is the beginning of the longer one.
-    let (campaign, gains) = short("episodes = 5", "\"ftc\"");
+    let (campaign, gains) = short(5, "\"ftc\"");
     for (batch, steps) in [(Some(1), Some(100)), (None, Some(1)), (Some(3), Some(7))] {
         let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(
@@ -61,9 +62,8 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
 #[test]
 fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let controllers = ("\"ftc\", \"pid\"", "\"pid\"");
-    let campaign = mixed_biped(&[controllers]);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let campaign = mixed_biped(&["controllers=[\"pid\"]"]);
+    let gains = gains(&campaign).loops();
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 16);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
@@ -76,8 +76,8 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
 #[test]
 fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let campaign = linked(&[("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"")]);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let campaign = linked(&["controllers=[\"pid\"]"]);
+    let gains = gains(&campaign).loops();
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     // Spans that end between the ticks of the controller, and while a link is blocked.
     for (batch, steps) in [(Some(3), Some(101)), (None, Some(7))] {
@@ -89,7 +89,7 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
 #[test]
 fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let (campaign, gains) = short("episodes = 70", "\"ftc\", \"pid\"");
+    let (campaign, gains) = short(70, "\"ftc\", \"pid\"");
     let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
     let all = digits(&fly_all(&mut flyer, &campaign).unwrap());
     // 43 steps: samples fall inside blocks of noise, and the last is shorter; more samples than one read-back holds.
@@ -131,18 +131,16 @@ fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
 #[test]
 fn what_faults_remember_outlives_every_span_and_batch() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let brief = [
-        ("duration_s = 1.5", "duration_s = 0.9"),
-        ("uniform = [0.3, 1.0]", "uniform = [0.1, 0.4]"),
-        ("\"ftc\", \"pid\"", "\"pid\""),
-    ];
-    for (name, episodes) in [
-        ("uav_faults", "episodes = 24"),
-        ("thrust_faults", "episodes = 16"),
-    ] {
-        let few = (episodes, "episodes = 5");
-        let campaign = replaced(name, &[&brief[..], &[few]].concat());
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    for name in ["uav_faults", "thrust_faults"] {
+        let faults = gpu_campaign(name, &[]).faults.len();
+        let early = |fault| format!("fault.{fault}.onset_s.uniform=[0.1, 0.4]");
+        let mut brief: Vec<String> = (0..faults).map(early).collect();
+        brief.push("time.duration_s=0.9".into());
+        brief.push("controllers=[\"pid\"]".into());
+        brief.push("episodes=5".into());
+        let brief: Vec<&str> = brief.iter().map(String::as_str).collect();
+        let campaign = gpu_campaign(name, &brief);
+        let gains = gains(&campaign).loops();
         let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
         for (batch, steps) in [(None, Some(7)), (Some(2), Some(1))] {
             let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));

@@ -1,28 +1,20 @@
 //! What can go wrong with a device, and what is said of it.
 
 use super::fly;
-use crate::common::{adapter_or_skip, gpu_or_skip};
+use crate::common::{adapter_or_skip, gains, gpu_or_skip};
 use crate::common::{altered, campaign};
 use std::process::Command;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning, Wanted};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::reference::Reference;
 use urts_mc::synthesis::LoopGains;
 
 fn small() -> (Campaign, Vec<Vec<LoopGains>>) {
     let campaign = altered(
         "smoke",
-        &[
-            ("episodes = 32", "episodes = 6"),
-            ("duration_s = 6.0", "duration_s = 4.2"),
-            (
-                "controllers = [\"ftc\", \"pid\", \"pid-tuned\"]",
-                "controllers = [\"pid\"]",
-            ),
-        ],
+        &["episodes=6", "time.duration_s=4.2", "controllers=[\"pid\"]"],
     );
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     (campaign, gains)
 }
 
@@ -139,7 +131,7 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
     if std::env::var_os(STARVED).is_some() {
         // The samples of so many episodes, of four groups under three controllers, take more than a gigabyte.
         let campaign = campaign("smoke");
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+        let gains = gains(&campaign).loops();
         let gpu = Gpu::open(Wanted::Named(&name)).unwrap();
         let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
         let many: Vec<u32> = (0..30_000).collect();
@@ -237,7 +229,7 @@ fn a_team_too_large_for_a_workgroup_is_an_error_that_says_how_large() {
     let team = 2000;
     let mut campaign = with_team(campaign("scenario-b"), team);
     campaign.time.steps = 1;
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err() {
         Some(GpuError::TooLarge {
             adapter,

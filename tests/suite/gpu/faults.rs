@@ -2,10 +2,9 @@
 
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
-use super::{LONGEST, fly, jets, linked, replaced};
-use crate::common::{altered, gpu_or_skip};
+use super::{LONGEST, fly, gpu_campaign, jets, linked};
+use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
-use urts_mc::controllers::GainSet;
 
 /// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.
 fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
@@ -24,7 +23,7 @@ fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
 
 #[test]
 fn val_all_faults_of_a_uav_agree() {
-    let campaign = replaced("uav_faults", &[]);
+    let campaign = gpu_campaign("uav_faults", &[]);
     has_all(&campaign, &[]);
     for kind in [
         DisturbanceKind::Gust1Cosine,
@@ -47,14 +46,12 @@ fn val_all_faults_of_a_uav_agree() {
 
 #[test]
 fn val_faults_that_differ_from_agent_to_agent_agree() {
-    let magnitude = "magnitude = { uniform = [0.1, 0.5] }";
-    let blocks = r#"duration_s = 2.0
-agents = [
+    let blocks = r#"fault.0.agents=[
     { probability = 1.0, channels = [2, 3], onset_s = 1.0, duration_s = 0.5, magnitude = 0.25 },
     { probability = 0.0 },
     { probability = 1.0, channels = "all", ramp_s = 0.3 },
 ]"#;
-    let campaign = altered("smoke", &[(magnitude, &format!("{magnitude}\n{blocks}"))]);
+    let campaign = altered("smoke", &["fault.0.duration_s=2.0", blocks]);
     assert!(campaign.faults[0].spares_some());
     let Some([double, single]) = agreement(&campaign) else {
         return;
@@ -73,11 +70,11 @@ fn val_jets_alone_agree() {
 
 #[test]
 fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands() {
-    let campaign = replaced("thrust_faults", &[]);
+    let campaign = gpu_campaign("thrust_faults", &[]);
     has_all(&campaign, &[]);
     // The contract alone: some of these flights are shaken so much that rounding grows beyond what calm ones show.
     let Some(gpu) = gpu_or_skip() else { return };
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     let flown = fly(&gpu, &campaign, &gains, LONGEST);
     let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&flown);
     let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));
@@ -95,7 +92,7 @@ fn val_links_and_actuators_that_fail_together_under_a_sampled_controller_agree()
 
 #[test]
 fn val_all_faults_of_a_robot_agree() {
-    let campaign = replaced("biped_faults", &[]);
+    let campaign = gpu_campaign("biped_faults", &[]);
     let airborne = [
         FaultKind::Inertia,
         FaultKind::CenterOfMass,

@@ -3,10 +3,9 @@
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
 use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixed_thrust};
-use crate::common::gpu_or_skip;
+use crate::common::{gains, gpu_or_skip};
 use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 
 /// What is wrong, the text that is right, and the wrong one.
 type Mutation = (&'static str, &'static str, &'static str);
@@ -339,7 +338,7 @@ struct Ground {
 
 impl Ground {
     fn new(campaign: Campaign) -> Self {
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+        let gains = gains(&campaign).loops();
         let expected = [&TWIN, &CONTRACT].map(|against| Expected::new(&campaign, &gains, against));
         Self {
             campaign,
@@ -388,18 +387,15 @@ impl Ground {
 }
 
 /// One controller, and errors that seldom fail.
-const GENTLE: [(&str, &str); 3] = [
-    ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
-    ("max_error = 0.4", "max_error = 1.0"),
-    ("max_rmse = 0.3", "max_rmse = 1.0"),
+const GENTLE: [&str; 3] = [
+    "controllers=[\"ftc\"]",
+    "verdict.max_error=1.0",
+    "verdict.max_rmse=1.0",
 ];
 
 fn full() -> Campaign {
     // The attitude has 16 episodes per workgroup.
-    let own = [
-        ("episodes = 80", "episodes = 20"),
-        ("[0.0, 1.0, 60.0], weights = [4.0, 4.0, 1.0]", "[0.0, 1.0]"),
-    ];
+    let own = ["episodes=20", "coupling.kappa={ choice = [0.0, 1.0] }"];
     mixed(&[&BRIEF[..], &ALIKE, &GENTLE, &own].concat())
 }
 
@@ -413,25 +409,18 @@ fn mutations_under_full_actuation_are_noticed() {
 fn mutations_under_thrust_are_noticed() {
     let Some(gpu) = gpu_or_skip() else { return };
     // A workgroup has 8 episodes.
-    let own = [
-        ("episodes = 80", "episodes = 12"),
-        (
-            "[0.0, 0.05, 20.0], weights = [4.0, 4.0, 1.0]",
-            "[0.0, 0.05]",
-        ),
-    ];
+    let own = ["episodes=12", "coupling.kappa={ choice = [0.0, 0.05] }"];
     Ground::new(mixed_thrust(&[&BRIEF[..], &GENTLE, &own].concat())).notices(&gpu, &THRUST);
 }
 
 #[test]
 fn mutations_of_bipeds_are_noticed() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let controllers = ("\"ftc\", \"pid\"", "\"ftc\"");
-    let kappa = (
-        "[0.0, 10.0, 4000.0], weights = [2.0, 2.0, 1.0]",
-        "[0.0, 10.0]",
-    );
-    Ground::new(mixed_biped(&[controllers, kappa])).notices(&gpu, &BIPED);
+    let own = [
+        "controllers=[\"ftc\"]",
+        "coupling.kappa={ choice = [0.0, 10.0] }",
+    ];
+    Ground::new(mixed_biped(&own)).notices(&gpu, &BIPED);
 }
 
 #[test]
@@ -439,9 +428,9 @@ fn mutations_of_jets_are_noticed() {
     let Some(gpu) = gpu_or_skip() else { return };
     // A workgroup of three axes has 16 episodes.
     let own = [
-        ("episodes = 8", "episodes = 20"),
-        ("duration_s = 4.0", "duration_s = 1.2"),
-        ("\"ftc\", \"pid\", \"pid-tuned\"", "\"ftc\""),
+        "episodes=20",
+        "time.duration_s=1.2",
+        "controllers=[\"ftc\"]",
     ];
     Ground::new(jets(&own)).notices(&gpu, &JETS);
 }
@@ -449,8 +438,7 @@ fn mutations_of_jets_are_noticed() {
 #[test]
 fn mutations_of_links_are_noticed() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let controllers = ("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"");
-    Ground::new(linked(&[controllers])).notices(&gpu, &LINK);
+    Ground::new(linked(&["controllers=[\"pid\"]"])).notices(&gpu, &LINK);
 }
 
 #[test]

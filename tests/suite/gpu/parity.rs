@@ -3,18 +3,17 @@
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN, failed, figures, saturated};
 use super::{Gains, LONGEST, fly, mixed, mixed_thrust, team_of};
-use crate::common::altered;
 use crate::common::gpu_or_skip;
+use crate::common::{altered, gains};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::model::ChannelSample;
 
 /// Flies a campaign and demands agreement, in double and in single precision; none without an adapter.
 pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
     let gpu = gpu_or_skip()?;
-    let gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
+    let gains = gains(campaign).loops();
     let flown = fly(&gpu, campaign, &gains, LONGEST);
     for (k, one) in flown.iter().enumerate() {
         let mut before = flown[..k].iter();
@@ -34,7 +33,7 @@ pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
 #[test]
 fn val_smoke_agrees_beyond_one_workgroup() {
     // A workgroup of an axis holds 64 episodes.
-    let campaign = altered("smoke", &[("episodes = 32", "episodes = 70")]);
+    let campaign = altered("smoke", &["episodes=70"]);
     let Some([double, single]) = agreement(&campaign) else {
         return;
     };
@@ -43,7 +42,7 @@ fn val_smoke_agrees_beyond_one_workgroup() {
 
 #[test]
 fn val_uav_paper_agrees() {
-    let campaign = altered("uav-paper", &[("episodes = 1024", "episodes = 24")]);
+    let campaign = altered("uav-paper", &["episodes=24"]);
     let Some([double, _]) = agreement(&campaign) else {
         return;
     };
@@ -56,9 +55,10 @@ fn val_uav_physical_agrees_and_saturates() {
         "uav-physical",
         // Small errors at the start, so that some flights do not saturate.
         &[
-            ("episodes = 1024", "episodes = 24"),
-            ("duration_s = 20.0", "duration_s = 12.0"),
-            ("std = 0.1", "std = 0.05"),
+            "episodes=24",
+            "time.duration_s=12.0",
+            "initial.error.normal.std=0.05",
+            "initial.error_rate.normal.std=0.05",
         ],
     );
     let Some([double, single]) = agreement(&campaign) else {
@@ -69,13 +69,7 @@ fn val_uav_physical_agrees_and_saturates() {
 
 #[test]
 fn val_waypoints_with_noise_agree() {
-    let campaign = altered(
-        "waypoints",
-        &[
-            ("episodes = 256", "episodes = 16"),
-            ("duration_s = 30.0", "duration_s = 20.0"),
-        ],
-    );
+    let campaign = altered("waypoints", &["episodes=16", "time.duration_s=20.0"]);
     assert!(
         campaign
             .faults
@@ -90,13 +84,13 @@ fn val_waypoints_with_noise_agree() {
 
 #[test]
 fn val_the_deterministic_scenarios_agree() {
-    let a = altered("scenario-a", &[("duration_s = 20.0", "duration_s = 8.0")]);
+    let a = altered("scenario-a", &["time.duration_s=8.0"]);
     let b = altered(
         "scenario-b",
         &[
-            ("duration_s = 20.0", "duration_s = 10.0"),
-            ("onset_s = 8.0", "onset_s = 4.0"),
-            ("onset_s = 12.0", "onset_s = 6.0"),
+            "time.duration_s=10.0",
+            "fault.0.onset_s=4.0",
+            "fault.1.onset_s=6.0",
         ],
     );
     for campaign in [a, b] {
@@ -109,13 +103,7 @@ fn val_the_deterministic_scenarios_agree() {
 
 #[test]
 fn val_observers_that_start_from_zero_agree() {
-    let campaign = altered(
-        "no-fault",
-        &[
-            ("episodes = 256", "episodes = 8"),
-            ("duration_s = 20.0", "duration_s = 4.0"),
-        ],
-    );
+    let campaign = altered("no-fault", &["episodes=8", "time.duration_s=4.0"]);
     let Some([double, _]) = agreement(&campaign) else {
         return;
     };
@@ -143,13 +131,14 @@ fn val_everything_at_once_under_thrust_agrees() {
 fn val_a_team_of_64_agrees_though_its_references_take_turns_on_the_device() {
     // One row per half step: 64 agents x 6 channels x 16 bytes, so 32 MiB hold the references of 2730 steps.
     let changes = [
-        ("episodes = 1024", "episodes = 2"),
-        ("choice = [0.0, 0.05]", "choice = [0.0, 0.001]"),
-        ("std = 0.1", "std = 0.05"),
-        ("max_torque_n_m = 60.0", "max_torque_n_m = 600.0"),
-        ("max_thrust_n = 80.0", "max_thrust_n = 200.0"),
-        ("duration_s = 20.0", "duration_s = 11.0"),
-        ("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\""),
+        "episodes=2",
+        "coupling.kappa.choice=[0.0, 0.001]",
+        "initial.error.normal.std=0.05",
+        "initial.error_rate.normal.std=0.05",
+        "agent.max_torque_n_m=600.0",
+        "agent.max_thrust_n=200.0",
+        "time.duration_s=11.0",
+        "controllers=[\"pid\"]",
     ];
     let campaign = team_of(&altered("uav-physical", &changes), 64);
     assert!(campaign.time.steps > 2 * 2730);
@@ -179,7 +168,7 @@ const QUANTITIES: [Quantity; 9] = [
 /// Follows some episodes of a campaign, every 20 ms, and demands that they agree with double precision and end as they do in
 /// a flight of all episodes; returns how many flights were followed to the end.
 pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
-    let gains: Gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
+    let gains: Gains = gains(campaign).loops();
     let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
     let cpu = Cpu::new(campaign, &gains, Precision::F64, None);
     let mut instants = Vec::new();
@@ -241,14 +230,15 @@ pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usiz
 #[test]
 fn val_trajectories_agree_at_every_sample_and_end_as_flights_do() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let full = mixed(&[("episodes = 80", "episodes = 20")]);
+    let full = mixed(&["episodes=20"]);
     assert!(followed(&gpu, &full, &[19, 0, 7, 4, 12]) > 4);
     let thrust = altered(
         "uav-physical",
         &[
-            ("episodes = 1024", "episodes = 10"),
-            ("duration_s = 20.0", "duration_s = 11.0"),
-            ("std = 0.1", "std = 0.05"),
+            "episodes=10",
+            "time.duration_s=11.0",
+            "initial.error.normal.std=0.05",
+            "initial.error_rate.normal.std=0.05",
         ],
     );
     assert!(followed(&gpu, &thrust, &[9, 2, 3]) > 2);

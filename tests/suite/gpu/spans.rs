@@ -2,47 +2,43 @@
 //! time of the last. Large teams, many signals and long memories have the most iterations of loops, which software drivers bound.
 
 use super::determinism::digits;
-use super::{Gains, fly_all, jets, linked, replaced, team_of};
-use crate::common::{altered, gpu_or_skip};
+use super::{Gains, fly_all, gpu_campaign, jets, linked, team_of};
+use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{AdapterKind, Gpu, GpuError, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
-use urts_mc::controllers::GainSet;
 use urts_mc::simulation::cross_check::cross_check;
 use urts_mc::simulation::{Backend, RunOptions, fly};
 
-const PID: (&str, &str) = ("\"ftc\", \"pid\", \"pid-tuned\"", "\"pid\"");
+const PID: &str = "controllers=[\"pid\"]";
 
 /// UAVs under thrust that are coupled: all six channels in one group, whose loops over the team run in each of four stages.
-fn thrust(team: usize, episodes: &str, duration_s: &str) -> Campaign {
+fn thrust(team: usize, episodes: u32, duration_s: f64) -> Campaign {
     let changes = [
         PID,
-        ("episodes = 1024", episodes),
-        ("choice = [0.0, 0.05]", "choice = [0.0, 0.001]"),
-        ("std = 0.1", "std = 0.05"),
-        ("max_torque_n_m = 60.0", "max_torque_n_m = 600.0"),
-        ("max_thrust_n = 80.0", "max_thrust_n = 200.0"),
-        ("duration_s = 20.0", duration_s),
-        ("settle_s = 2.0", "settle_s = 0.2"),
-        ("uniform = [3.0, 10.0]", "uniform = [0.1, 1.0]"),
+        &format!("episodes={episodes}"),
+        "coupling.kappa.choice=[0.0, 0.001]",
+        "initial.error.normal.std=0.05",
+        "initial.error_rate.normal.std=0.05",
+        "agent.max_torque_n_m=600.0",
+        "agent.max_thrust_n=200.0",
+        &format!("time.duration_s={duration_s:?}"),
+        "time.settle_s=0.2",
+        "fault.0.onset_s.uniform=[0.1, 1.0]",
     ];
     team_of(&altered("uav-physical", &changes), team)
 }
 
 /// 33 UAVs that feel two kinds of jets of each other, in each of four stages.
 fn blown() -> Campaign {
-    let base = jets(&[
-        PID,
-        ("episodes = 8", "episodes = 2"),
-        ("duration_s = 4.0", "duration_s = 0.8"),
-    ]);
+    let base = jets(&[PID, "episodes=2", "time.duration_s=0.8"]);
     team_of(&base, 33)
 }
 
 /// Flies a campaign in spans of every kind and demands the same bits, of flights and of a trace that shows nothing on the way;
 /// returns the longest span and the steps of an episode.
 fn alike(gpu: &Gpu, campaign: &Campaign) -> [u32; 2] {
-    let gains: Gains = GainSet::synthesize_or_load(campaign).unwrap().loops();
+    let gains: Gains = gains(campaign).loops();
     let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
     let adapted = digits(&fly_all(&mut flyer, campaign).unwrap());
     let (most, steps) = (flyer.most_steps(), campaign.time.steps);
@@ -70,17 +66,17 @@ fn alike_beyond_one_dispatch(campaign: &Campaign) {
 
 #[test]
 fn spans_of_a_team_of_33_under_thrust_do_not_change_a_bit() {
-    alike_beyond_one_dispatch(&thrust(33, "episodes = 2", "duration_s = 1.2"));
+    alike_beyond_one_dispatch(&thrust(33, 2, 1.2));
 }
 
 #[test]
 fn spans_of_a_team_of_64_on_axes_do_not_change_a_bit() {
-    let coupled = "observer = \"zero\"\n[coupling]\nkappa = 0.001\n[[fault]]\ntarget = \"sensor\"\nkind = \"noise\"\nstd = 0.001\n";
     let changes = [
         PID,
-        ("episodes = 256", "episodes = 2"),
-        ("duration_s = 20.0", "duration_s = 0.8"),
-        ("observer = \"zero\"", coupled),
+        "episodes=2",
+        "time.duration_s=0.8",
+        "coupling.kappa=0.001",
+        "fault.+={ target = \"sensor\", kind = \"noise\", std = 0.001 }",
     ];
     alike_beyond_one_dispatch(&team_of(&altered("no-fault", &changes), 64));
 }
@@ -92,17 +88,17 @@ fn spans_of_a_team_of_33_among_jets_do_not_change_a_bit() {
 
 #[test]
 fn spans_of_33_robots_do_not_change_a_bit() {
-    let coupled = "settle_s = 0.1\n\n[coupling]\nkappa = 1.0";
     let campaign = altered(
         "biped-ground-reaction",
         &[
             PID,
-            ("episodes = 512", "episodes = 1"),
-            ("duration_s = 9.0", "duration_s = 0.4"),
-            ("step_s = 0.002", "step_s = 0.001"),
-            ("settle_s = 1.0", coupled),
-            ("kind = \"biped\"", "kind = \"biped\"\nteam = 33"),
-            ("kind = \"walk\"", "kind = \"walk\"\nstart_s = -2.0"),
+            "episodes=1",
+            "time.duration_s=0.4",
+            "time.step_s=0.001",
+            "time.settle_s=0.1",
+            "coupling.kappa=1.0",
+            "agent.team=33",
+            "reference.start_s=-2.0",
         ],
     );
     alike_beyond_one_dispatch(&campaign);
@@ -110,21 +106,17 @@ fn spans_of_33_robots_do_not_change_a_bit() {
 
 #[test]
 fn spans_of_many_signals_do_not_change_a_bit() {
-    let changes = [
-        ("\"ftc\", \"pid\"", "\"pid\""),
-        ("episodes = 24", "episodes = 3"),
-        ("duration_s = 1.5", "duration_s = 1.2"),
-    ];
-    alike_beyond_one_dispatch(&replaced("uav_faults", &changes));
+    let changes = [PID, "episodes=3", "time.duration_s=1.2"];
+    alike_beyond_one_dispatch(&gpu_campaign("uav_faults", &changes));
 }
 
 #[test]
 fn spans_of_long_memories_do_not_change_a_bit() {
     let changes = [
         PID,
-        ("episodes = 8", "episodes = 2"),
-        ("window_s = 0.014", "window_s = 0.4"),
-        ("duration_s = 2.0", "duration_s = 1.8"),
+        "episodes=2",
+        "fault.1.window_s=0.4",
+        "time.duration_s=1.8",
     ];
     let Some(gpu) = gpu_or_skip() else { return };
     alike(&gpu, &linked(&changes));
@@ -138,8 +130,8 @@ fn spans_beyond_the_bound_are_wrong_where_the_driver_ends_loops() {
         println!("SKIPPED: a driver that ends no loop");
         return;
     }
-    for campaign in [thrust(33, "episodes = 2", "duration_s = 1.2"), blown()] {
-        let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    for campaign in [thrust(33, 2, 1.2), blown()] {
+        let gains = gains(&campaign).loops();
         let steps = campaign.time.steps;
         // What is asked for by hand is bounded, too.
         let asked = Tuning {
@@ -166,8 +158,8 @@ fn spans_beyond_the_bound_are_wrong_where_the_driver_ends_loops() {
 #[test]
 fn a_run_of_a_team_of_33_passes_its_cross_check() {
     let Some(gpu) = gpu_or_skip() else { return };
-    let campaign = thrust(33, "episodes = 4", "duration_s = 2.0");
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap();
+    let campaign = thrust(33, 4, 2.0);
+    let gains = gains(&campaign);
     let options = RunOptions {
         backend: Backend::Gpu { adapter: None },
         ..RunOptions::cpu(Precision::F32)
@@ -189,14 +181,10 @@ fn a_step_with_more_iterations_than_loops_may_have_is_refused() {
     // 64 agents feel 300 jets of each other in four stages: 78,000 iterations.
     let jet =
         "[[disturbance]]\nkind = \"rotor-vortex\"\nforce_n = 1.0\nradius_m = 1.0\nlength_m = 1.0\n";
-    let many = format!("observer = \"zero\"\n{}", jet.repeat(300));
-    let changes = [
-        PID,
-        ("episodes = 256", "episodes = 1"),
-        ("observer = \"zero\"", &*many),
-    ];
+    let many = jet.repeat(300);
+    let changes = [PID, "episodes=1", &many];
     let campaign = team_of(&altered("no-fault", &changes), 64);
-    let gains = GainSet::synthesize_or_load(&campaign).unwrap().loops();
+    let gains = gains(&campaign).loops();
     let error = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err();
     let Some(error @ GpuError::TooLarge { needed, limit, .. }) = error else {
         panic!("{error:?}");
