@@ -53,7 +53,8 @@ pub enum CampaignError {
     },
 }
 
-/// A parse error in the words of a campaign's writer, with what to do; `setting` brought in what is wrong, if not the file.
+/// A parse error in the words of a campaign's writer, with what to do; `setting` brought in what is wrong, if it is not
+/// the file's.
 pub(super) fn syntax(
     path: &Path,
     error: &toml::de::Error,

@@ -16,7 +16,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 /// - `fault.0.magnitude=` removes a key; so does `fault.0=` an entry of a list, and `stop=` a whole table.
 /// - `fault.+={ .. }` appends an entry to a list, and so does the first number that is not taken.
 ///
-/// The key is written as error messages write it, `fault[0].magnitude`, or with dots alone. The value is TOML; a word that is
+/// The key is written as in error messages, `fault[0].magnitude`, or with dots alone. The value is TOML; a word that is
 /// none is a string: `sampling.design=sobol`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -160,7 +160,8 @@ impl Setting {
         &self.written[..end]
     }
 
-    /// What becomes of the value behind `k` steps of the key, or of none there; a new value is said to stand at `place`.
+    /// What becomes of the value behind `k` steps of the key, or of none there; a new value is said to stand at
+    /// `place`.
     pub(super) fn laid<'a>(
         &'a self,
         k: usize,

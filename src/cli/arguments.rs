@@ -270,7 +270,7 @@ pub(crate) struct SynthesizeArguments {
         long,
         value_name = "KEY=VALUE",
         verbatim_doc_comment,
-        requires = "campaign"
+        conflicts_with = "preset"
     )]
     pub(crate) set: Vec<Setting>,
     /// Print as JSON, in the format of gains.json

@@ -39,10 +39,12 @@ impl OutputDir {
         if occupied && !overwrite {
             match Manifest::read(path) {
                 Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
-                    return Err(taken(format!(
-                        "a run of another campaign text or other settings ({:?})",
-                        run.name
-                    )));
+                    let what = if run.campaign == campaign.text {
+                        "this campaign with other settings"
+                    } else {
+                        "another campaign text"
+                    };
+                    return Err(taken(format!("a run of {what} ({:?})", run.name)));
                 }
                 Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => {
                     return Err(taken(format!(

@@ -68,7 +68,8 @@ pub struct Manifest {
 /// The source revision that this program was built from.
 pub(crate) const GIT_REVISION: Option<&str> = option_env!("URTS_MC_GIT_REVISION");
 
-/// The hash that tells one campaign text, with the settings laid over it, from another: that of the text alone if there are none.
+/// The hash that tells one campaign text, with the settings laid over it, from another; that of the text alone if there
+/// are no settings.
 #[must_use]
 pub fn campaign_hash(campaign: &Campaign) -> String {
     let mut hasher = blake3::Hasher::new();

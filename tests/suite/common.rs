@@ -65,8 +65,8 @@ fn named_if_a_test_fails(file: &str, overlay: &[Setting]) {
     });
 }
 
-/// Changes of a campaign: settings, as `--set` takes them, and pieces of a campaign file, such as `[[fault]]` and what belongs to
-/// it, whose lists of tables go behind those of the campaign and whose other keys replace its own.
+/// Changes of a campaign: settings, as `--set` takes them, and pieces of a campaign file, such as `[[fault]]` and what
+/// belongs to it, whose lists of tables go behind those of the campaign and whose other keys replace its own.
 pub(crate) fn settings(changes: &[&str]) -> Vec<Setting> {
     let of_piece = |piece: &str| -> Vec<String> {
         let piece: toml::Table = piece.parse().unwrap();

@@ -39,7 +39,7 @@ fn fly_and_lose(
     let told = AtomicU32::new(0);
     let flight = fly(
         &campaign,
-        &gains,
+        gains,
         &in_batches_of_eight(backend),
         Some(gpu),
         &|episodes| {
@@ -80,7 +80,7 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others()
     let gains = gains(&campaign);
     let whole = fly(
         &campaign,
-        &gains,
+        gains,
         &RunOptions::cpu(Precision::F32),
         None,
         &|_| (),
@@ -177,10 +177,10 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let campaign = short();
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let mut flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
+    let mut flight = fly(&campaign, gains, &options, None, &|_| ()).unwrap();
     let check = |flight: &Simulation| {
         let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-        cross_check(&campaign, &gains, &options, leg, scores, None, 24).unwrap()
+        cross_check(&campaign, gains, &options, leg, scores, None, 24).unwrap()
     };
     let sound = check(&flight);
     assert!(sound.holds() && sound.compared > 24, "{sound:?}");
@@ -200,14 +200,14 @@ fn a_flight_whose_every_difference_grows_is_left_out_of_the_cross_check() {
     let campaign = altered("uav-faults", &["episodes=120"]);
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let flight = fly(&campaign, &gains, &options, None, &|_| ()).unwrap();
+    let flight = fly(&campaign, gains, &options, None, &|_| ()).unwrap();
     let leg = Segment {
         first: 112,
         episodes: 8,
         ..flight.legs[0].clone()
     };
     let scores = &flight.tables.scores;
-    let check = cross_check(&campaign, &gains, &options, &leg, scores, None, 8).unwrap();
+    let check = cross_check(&campaign, gains, &options, &leg, scores, None, 8).unwrap();
     assert!(check.holds() && check.sensitive == 2, "{check:?}");
     assert!(check.compared > 12, "{check:?}");
 }

@@ -138,7 +138,7 @@ fn failing() -> Campaign {
 fn flown(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
     let campaign = failing();
     let gains = gains(&campaign);
-    fly(&campaign, &gains, options, gpu, &|_| ()).unwrap()
+    fly(&campaign, gains, options, gpu, &|_| ()).unwrap()
 }
 
 #[test]

@@ -21,9 +21,6 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         },
     );
     add("campaign", manifest.campaign_path.clone());
-    for setting in &manifest.overlay {
-        add("with", format!("--set {setting}"));
-    }
     let hashed = match manifest.overlay.is_empty() {
         true => "BLAKE3 of its text",
         false => "BLAKE3 of its text and settings",
@@ -76,16 +73,22 @@ pub(crate) fn section(evidence: &RunData) -> Section {
             times.writing_s
         ),
     );
-    Section::new(
-        "Provenance",
-        vec![
-            Block::Grid(grid),
-            Block::Folded(
-                "The campaign".into(),
-                vec![Block::Code(manifest.campaign.clone())],
-            ),
-        ],
-    )
+    let mut blocks = vec![Block::Grid(grid)];
+    if !manifest.overlay.is_empty() {
+        let settings = manifest
+            .overlay
+            .iter()
+            .map(|setting| format!("--set {setting}\n"));
+        blocks.push(Block::Folded(
+            "The settings laid over the campaign".into(),
+            vec![Block::Code(settings.collect())],
+        ));
+    }
+    blocks.push(Block::Folded(
+        "The campaign".into(),
+        vec![Block::Code(manifest.campaign.clone())],
+    ));
+    Section::new("Provenance", blocks)
 }
 
 fn engine(leg: &Segment, several: bool) -> String {

@@ -14,7 +14,7 @@ fn found(campaign: &Campaign, controller: &str, episode: u32) -> Attenuations {
     let names = &campaign.controllers;
     let index = names.iter().position(|name| name == controller).unwrap();
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
-    let witness = AttenuationAnalysis::new(campaign, &gains, index);
+    let witness = AttenuationAnalysis::new(campaign, gains, index);
     witness.of_episode(episode, || cpu.trace(episode, index, 1).1)
 }
 

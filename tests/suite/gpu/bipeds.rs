@@ -116,9 +116,9 @@ fn a_run_of_bipeds_passes_its_cross_check() {
         tuning: Tuning::default(),
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = fly(&campaign, &gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let flight = fly(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
     let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-    let check = cross_check(&campaign, &gains, &options, leg, scores, Some(&gpu), 8).unwrap();
+    let check = cross_check(&campaign, gains, &options, leg, scores, Some(&gpu), 8).unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 2, "{check:?}");
 }

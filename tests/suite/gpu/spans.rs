@@ -164,9 +164,9 @@ fn a_run_of_a_team_of_33_passes_its_cross_check() {
         backend: Backend::Gpu { adapter: None },
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = fly(&campaign, &gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let flight = fly(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
     let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-    let check = cross_check(&campaign, &gains, &options, leg, scores, Some(&gpu), 2).unwrap();
+    let check = cross_check(&campaign, gains, &options, leg, scores, Some(&gpu), 2).unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 0, "{check:?}");
 }
