@@ -1,4 +1,5 @@
-// Twin of src/model/controller.rs: observer (20) and feedback (21) of one channel, whose state is [int e, e, e', observer].
+// Twin of src/model/controller.rs: observer (20) and feedback (21) of one channel, whose state is [int e, e, e',
+// observer].
 
 struct ChannelGains {
     // K of (21): four and three.
@@ -11,8 +12,9 @@ struct ChannelGains {
     sensor_fault_input: vec4<f32>,
 }
 
-// The gains of the channel. A group under thrust has those of position and of attitude, every other one kind: what is read at
-// a constant place of a uniform costs neither registers nor loads on most GPUs, so there are two reads and a choice.
+// The gains of the channel. A group under thrust has those of position and of attitude, every other one kind: what is
+// read at a constant place of a uniform costs neither registers nor loads on most GPUs, so there are two reads and a
+// choice.
 fn injection(row: u32) -> vec4<f32> {
     if PLANT == THRUST {
         return select(setting.gains[0].injection[row], setting.gains[KINDS - 1u].injection[row], is_attitude());

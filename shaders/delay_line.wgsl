@@ -1,5 +1,5 @@
-// Twin of src/model/exogenous/delay_line.rs: what a channel remembers of its commands and measurements. The samples of a ring lie in the
-// state, those of all commands first; a ring of measurements has those of x, then those of x'.
+// Twin of src/model/exogenous/delay_line.rs: what a channel remembers of its commands and measurements. The samples of
+// a ring lie in the state, those of all commands first; a ring of measurements has those of x, then those of x'.
 
 // What is between the command that is wanted and the one that acts: clamp(gain wanted + bias, low, high).
 struct Actuator {
@@ -9,8 +9,8 @@ struct Actuator {
     high: f32,
 }
 
-// What a ring plays in this step: whether it does (1 or 0), and the past at the step's start and at its end. Commands use the
-// first number only.
+// What a ring plays in this step: whether it does (1 or 0), and the past at the step's start and at its end. Commands
+// use the first number only.
 struct Past {
     plays: f32,
     start: vec2<f32>,

@@ -32,8 +32,8 @@ var<private> scale: f32;
 var<private> frozen: f32;
 // 1 / true inertia in this step.
 var<private> inverse_inertia: f32;
-// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the one that acted,
-// and x and x' as measured.
+// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the one
+// that acted, and x and x' as measured.
 var<private> last_sent: f32;
 var<private> last_arrived: f32;
 var<private> last_command: f32;
@@ -42,8 +42,8 @@ var<private> last_measured: vec2<f32>;
 var<private> disturbance: f32;
 var<private> sensor_fault: f32;
 
-// Takes the signals from the draw, with their phases at the start of a step. Phases count in fixed point modulo one turn, so
-// this is exactly the sum of as many half steps.
+// Takes the signals from the draw, with their phases at the start of a step. Phases count in fixed point modulo one
+// turn, so this is exactly the sum of as many half steps.
 fn exogenous_inputs_begin(step: u32) {
     constant = drawn_number(CONSTANT);
     ground = drawn_number(GROUND);
@@ -197,8 +197,8 @@ fn exogenous_inputs_evaluate(step: u32, moment: u32) {
     }
 }
 
-// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant within a step,
-// and stays so however late it arrives: delays are whole steps.
+// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant
+// within a step, and stays so however late it arrives: delays are whole steps.
 fn carry_command(step: u32, moment: u32) {
     let sampled = HOLD_STEPS > 1u;
     let held = sampled && (moment != START || !exogenous_inputs_ticks(step));

@@ -1,5 +1,5 @@
-// Twin of src/model/integrator.rs: the classical fourth-order Runge-Kutta method (Hairer, Norsett, Wanner, Solving ODEs I,
-// section II.1), with the weighted sum of the slopes kept instead of the slopes themselves.
+// Twin of src/model/integrator.rs: the classical fourth-order Runge-Kutta method (Hairer, Norsett, Wanner, Solving ODEs
+// I, section II.1), with the weighted sum of the slopes kept instead of the slopes themselves.
 
 // A state while a step is taken: at its start, at the point where the current stage's slope is taken, and
 // start + h/6 (k1 + 2 k2 + ..), as far as the stages went.

@@ -1,4 +1,5 @@
-// Twin of src/model/lanes/scalar.rs: what the lane type f32 adds to the operators of WGSL. `mul_add` is the built-in fma.
+// Twin of src/model/lanes/scalar.rs: what the lane type f32 adds to the operators of WGSL. `mul_add` is the built-in
+// fma.
 
 // The larger value; `other` where either is NaN, which the built-in max does not promise.
 fn lane_max(value: f32, other: f32) -> f32 {

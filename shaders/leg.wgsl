@@ -1,7 +1,8 @@
 // Twin of src/model/plant/leg/dynamics.rs and src/model/plant/leg/link.rs: forward dynamics of a leg, (4). One
 // invocation answers for a leg.
 //
-// TWIST_1 to TWIST_5 are constants, PARALLEL, RIGHT or ANY: what is asked of a twist is decided when the shader is compiled.
+// TWIST_1 to TWIST_5 are constants, PARALLEL, RIGHT or ANY: what is asked of a twist is decided when the shader is
+// compiled.
 
 // Constants of a joint and its link.
 struct Joint {
@@ -112,8 +113,8 @@ fn forward_dynamics(
         damped(j3, rate[3], torque[3]) - load_3.moment.z,
     );
 
-    // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints before.
-    // With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.
+    // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints
+    // before. With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.
     let body_5 = tip(j5);
     let p54 = carried(TWIST_5, j5, t5, momentum(body_5));
     let p53 = carried(TWIST_4, j4, t4, p54);
@@ -390,8 +391,8 @@ fn tip(joint: Joint) -> Composite {
     );
 }
 
-// The body beyond a joint, in the frame before, together with the link there. Without mass, its first moment is the same
-// about every point.
+// The body beyond a joint, in the frame before, together with the link there. Without mass, its first moment is the
+// same about every point.
 fn composite(twist: u32, joint: Joint, t: Turn, beyond: Composite, own: Joint) -> Composite {
     let h = twisted(twist, joint, turned(t, beyond.first));
     let s = twisted_second(twist, joint, turned_second(t, beyond.second));

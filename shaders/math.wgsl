@@ -1,5 +1,5 @@
-// Twin of src/model/lanes/math.rs: elementary functions, since those of WGSL may be off by 2^-11. The coefficients come from
-// there; tanh, atan2 and clamp take the place of the built-in functions of these names.
+// Twin of src/model/lanes/math.rs: elementary functions, since those of WGSL may be off by 2^-11. The coefficients come
+// from there; tanh, atan2 and clamp take the place of the built-in functions of these names.
 
 fn polynomial_4(x: f32, c: array<f32, 4>) -> f32 {
     return fma(fma(fma(c[3], x, c[2]), x, c[1]), x, c[0]);
@@ -23,7 +23,8 @@ fn sin_folded(f: f32) -> f32 {
     return polynomial_5(f * f, SIN_FOLDED) * f;
 }
 
-// Sine and cosine of an angle, rad: reduction to [-pi/2, pi/2] by the nearest multiple n of pi, whose parity is the sign.
+// Sine and cosine of an angle, rad: reduction to [-pi/2, pi/2] by the nearest multiple n of pi, whose parity is the
+// sign.
 fn sin_cos(x: f32) -> vec2<f32> {
     let half = 0.5;
     let n = floor(fma(x, FRAC_1_PI, half));

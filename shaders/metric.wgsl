@@ -10,8 +10,8 @@ struct Sums {
     limited: f32,
 }
 
-// Of the steps since the last flush: short sums keep the digits of single precision. The sums of the steps before are in
-// the state buffer, where they are needed once per FLUSH_STEPS.
+// Of the steps since the last flush: short sums keep the digits of single precision. The sums of the steps before are
+// in the state buffer, where they are needed once per FLUSH_STEPS.
 var<private> recent: Sums;
 var<private> largest: f32;
 var<private> largest_command: f32;

@@ -1,5 +1,5 @@
-// Twin of src/model/exogenous/noise.rs: what is random in every step. Samples and states are kept in the state, where each is needed
-// once.
+// Twin of src/model/exogenous/noise.rs: what is random in every step. Samples and states are kept in the state, where
+// each is needed once.
 
 // Two independent normal numbers from two random words (Box and Muller's transform).
 fn normal_pair(word: u32, turn: u32) -> vec2<f32> {

@@ -1,6 +1,6 @@
-// Twin of src/model/plant/mod.rs: what every plant is asked and answers. A plant's own file says of what constants it is made
-// (`Plant`), what a channel takes of them (`ChannelPlant`, `channel_plant`), what its reference is (`reference`), what it shows
-// to the channels that it acts on (`publish_channel`), and how it answers (`respond`).
+// Twin of src/model/plant/mod.rs: what every plant is asked and answers. A plant's own file says of what constants it
+// is made (`Plant`), what a channel takes of them (`ChannelPlant`, `channel_plant`), what its reference is
+// (`reference`), what it shows to the channels that it acts on (`publish_channel`), and how it answers (`respond`).
 
 // The channel's reference at one instant.
 struct Reference {

@@ -1,5 +1,5 @@
-// Twin of src/model/plant/biped.rs: a leg of the biped of (4) with the feedforward law (9). One invocation answers for one
-// joint; the first joint's works out the forward dynamics of the leg, from what all six have published.
+// Twin of src/model/plant/biped.rs: a leg of the biped of (4) with the feedforward law (9). One invocation answers for
+// one joint; the first joint's works out the forward dynamics of the leg, from what all six have published.
 //
 // The table holds three rows of each joint, five where limits cut:
 //   0     r, r', r'', M(r) r'' + H(r, r')

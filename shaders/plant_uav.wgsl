@@ -1,5 +1,5 @@
-// Twin of src/model/plant/uav.rs: the UAV of (3) with the feedforward law (9). One invocation answers for one channel; what
-// it needs of its agent's other channels they have published (`seen`).
+// Twin of src/model/plant/uav.rs: the UAV of (3) with the feedforward law (9). One invocation answers for one channel;
+// what it needs of its agent's other channels they have published (`seen`).
 
 // Constants of the plant; those that a plant does not use are zero.
 struct Uav {

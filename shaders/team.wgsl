@@ -1,5 +1,5 @@
-// Twin of src/model/team.rs: a group of channels of a whole team. An invocation is one channel of one agent in one episode
-// under one controller; a workgroup holds whole teams, whose members see each other through workgroup memory.
+// Twin of src/model/team.rs: a group of channels of a whole team. An invocation is one channel of one agent in one
+// episode under one controller; a workgroup holds whole teams, whose members see each other through workgroup memory.
 
 // Who this invocation is.
 struct Own {
@@ -33,8 +33,8 @@ struct Own {
 var<private> own: Own;
 
 // What a channel shows to others, in two halves that the stages use in turn: one barrier per stage is enough, since who
-// writes to a half has passed the barrier after which the others had read it. Where commands leak, the last ones follow: they
-// are written after the first barrier of a step and read before that of the next.
+// writes to a half has passed the barrier after which the others had read it. Where commands leak, the last ones
+// follow: they are written after the first barrier of a step and read before that of the next.
 var<workgroup> published: array<f32, PUBLISHED * WORKGROUP>;
 
 fn slot(stage: u32, what: u32, channel: u32, agent: u32) -> u32 {
@@ -117,8 +117,8 @@ fn team_commands() -> f32 {
     return sum;
 }
 
-// A sum over a team, or an agent's place, made finite, so that an agent that diverged leaves those alone on whom it acts with a
-// strength of zero.
+// A sum over a team, or an agent's place, made finite, so that an agent that diverged leaves those alone on whom it
+// acts with a strength of zero.
 fn finite(sum: f32) -> f32 {
     return select(select(FAR_AWAY, -FAR_AWAY, sum < 0.0), sum, lane_within(sum, FAR_AWAY));
 }

@@ -1,4 +1,5 @@
-// Twin of src/model/exogenous/vortex.rs: the jets that rotors blow downwards, in which a UAV is pushed down that flies below another.
+// Twin of src/model/exogenous/vortex.rs: the jets that rotors blow downwards, in which a UAV is pushed down that flies
+// below another.
 
 // What an agent feels of the others' jets.
 struct Vortex {
@@ -51,7 +52,7 @@ fn vortex_force(stage: u32) -> f32 {
     for (var k = 0u; k < N_VORTICES; k++) {
         let vortex = vortex_drawn(k);
         var sum = 0.0;
-        // One's own share is zero: nobody is below himself.
+        // An agent does not act on itself: its vertical distance is 0.
         for (var agent = 0u; agent < TEAM; agent++) {
             sum = sum + jet_share(vortex, here, agent_place(stage, agent));
         }

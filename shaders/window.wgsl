@@ -1,5 +1,5 @@
-// Twin of src/model/exogenous/window.rs: when a fault is there, and how much of it. Switches are counted through all lists of signals; a
-// burst is a switch too, and has its own words beside.
+// Twin of src/model/exogenous/window.rs: when a fault is there, and how much of it. Switches are counted through all
+// lists of signals; a burst is a switch too, and has its own words beside.
 
 // The share of switch number `k`'s value that is there at a step.
 fn window_weight(k: u32, step: u32) -> f32 {

@@ -1,7 +1,7 @@
 //! Monte Carlo robustness evaluation of fault-tolerant controllers for teams of UAVs or bipeds.
 //!
-//! A campaign file says which closed loop is simulated, what disturbs it and what counts as failure; a run simulates every
-//! episode under every controller on the same draws and compares the controllers pair by pair.
+//! A campaign file says which closed loop is simulated, what disturbs it and what counts as failure; a run simulates
+//! every episode under every controller on the same draws and compares the controllers pair by pair.
 //!
 //! # The rooms, from the ground up
 //! A module uses those above it in this list only, never one below; a test holds that (`tests/suite/house.rs`).
@@ -28,10 +28,12 @@
 //!
 //! # Invariants
 //! - A [`campaign::Campaign`] is complete and consistent; nothing after it checks input again.
-//! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a number.
+//! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a
+//!   number.
 //! - [`model`] is written once, generic over the lane type; what a campaign does not use is not in its loop.
 //! - Not-a-number is a verdict ("diverged"), never a value in a statistic and never a dropped row.
-//! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when complete.
+//! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when
+//!   complete.
 //! - The library does not print, does not exit and does not panic on input.
 
 pub mod util;

@@ -17,7 +17,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Mesa's device selection looks for a display, which no command needs, and complains on standard error if there is none.
+/// Mesa's device selection looks for a display, which no command needs, and complains on standard error if there is
+/// none.
 #[expect(
     unsafe_code,
     reason = "no other thread can read the environment: the program has just begun"

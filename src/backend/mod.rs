@@ -13,6 +13,6 @@ use crate::model::episode::AgentOutcome;
 pub struct EpisodeResult {
     /// What was drawn.
     pub episode: Episode,
-    /// How it went.
+    /// Per-agent outcomes.
     pub outcomes: Vec<Vec<AgentOutcome>>,
 }

@@ -9,8 +9,8 @@ use crate::reference::{AgentWalk, Reference, WaypointPath};
 use crate::statistics::LEVEL;
 use crate::statistics::{runs_needed, sequential_runs_needed};
 
-/// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached, faults that
-/// nobody has or that are gone before they have come.
+/// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached,
+/// faults that nobody has or that are gone before they have come.
 #[must_use]
 pub fn cautions(campaign: &Campaign) -> Vec<String> {
     let requirements = campaign.requirements.iter().enumerate();

@@ -34,8 +34,8 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Refuses a campaign whose gains files are not there. A run's campaign is parsed again without this: its gains are in
-    /// the run's own directory.
+    /// Refuses a campaign whose gains files are not there. A run's campaign is parsed again without this: its gains are
+    /// in the run's own directory.
     fn require_files(&self) -> Result<(), CampaignError> {
         let own = self
             .synthesis

@@ -32,9 +32,9 @@ pub struct Strata {
 }
 
 impl Strata {
-    /// Strata in the order of the tables. Episodes go round by round: one to each stratum, then a second to each whose share is 2
-    /// or more, and so on to the largest share, and all over again. So a longer run begins as a shorter one does, and every whole
-    /// turn has the shares to the episode.
+    /// Strata in the order of the tables. Episodes go round by round: one to each stratum, then a second to each whose
+    /// share is 2 or more, and so on to the largest share, and all over again. So a longer run begins as a shorter one
+    /// does, and every whole turn has the shares to the episode.
     #[must_use]
     pub fn new(list: Vec<Stratum>) -> Self {
         let rounds = list.iter().map(|stratum| stratum.share).max().unwrap_or(0);
@@ -71,7 +71,7 @@ impl Strata {
         (episodes as usize / turn) as u64 * own(&self.pattern) + own(&self.pattern[..rest])
     }
 
-    /// How many episodes there are when a stratum has had its `nth`, counted from 1; 0 of a stratum that there is not.
+    /// How many episodes there are when a stratum has had its `nth`, counted from 1; 0 if the stratum does not exist.
     #[must_use]
     pub fn episodes_for(&self, stratum: usize, nth: u64) -> u64 {
         let places = (1u64..).zip(&self.pattern);
@@ -144,7 +144,8 @@ impl Sampling {
         }
     }
 
-    /// An episode's replicate, and its place in it: they take turns, so that what is flown of a run that ends early is balanced.
+    /// An episode's replicate, and its place in it: they take turns, so that what is flown of a run that ends early is
+    /// balanced.
     #[must_use]
     pub fn place(self, episode: u32) -> Option<(u32, u32)> {
         let replicates = self.replicates()?.max(1);

@@ -66,8 +66,8 @@ impl<'a> Source<'a> {
             .map(|(setting, _)| setting)
     }
 
-    /// Where a key such as `fault[1].agents[0].std` stands: a line of the file, or a setting. The place of the innermost
-    /// table or list around it if it is not there.
+    /// Where a key such as `fault[1].agents[0].std` stands: a line of the file, or a setting. The place of the
+    /// innermost table or list around it if it is not there.
     pub(super) fn place_of(&self, key: &str) -> Option<String> {
         let root = self.root().ok()?;
         let mut here = root.get_ref();

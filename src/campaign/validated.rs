@@ -83,7 +83,8 @@ impl Campaign {
         &self.channels
     }
 
-    /// The groups of channels whose errors may be averaged: metres and radians are never mixed. Each has gains of its own.
+    /// The groups of channels whose errors may be averaged: metres and radians are never mixed. Each has gains of its
+    /// own.
     #[must_use]
     pub fn channel_groups(&self) -> Vec<ChannelGroup> {
         self.agent.channel_groups()
@@ -170,8 +171,8 @@ pub struct Requirement {
     pub controller: String,
     /// The stratum in which it has to, or [`ALL`](super::ALL) episodes.
     pub stratum: Arc<str>,
-    /// Upper limit of the one-sided 95 % bound of the failure rate: Clopper-Pearson's, or that of the confidence sequence where
-    /// `[stop]` decides on the number of episodes.
+    /// Upper limit of the one-sided 95 % bound of the failure rate: Clopper-Pearson's, or that of the confidence
+    /// sequence where `[stop]` decides on the number of episodes.
     pub failure_rate_upper_95: f64,
 }
 

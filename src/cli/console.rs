@@ -1,4 +1,5 @@
-//! What goes to standard output and to standard error: with colours on a terminal, without where it is none or `NO_COLOR` is set.
+//! What goes to standard output and to standard error: with colours on a terminal, without where it is none or
+//! `NO_COLOR` is set.
 
 use super::exit::{Code, Failure};
 use anstream::AutoStream;

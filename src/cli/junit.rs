@@ -18,7 +18,8 @@ impl JunitFile {
         self.write_text(&junit(manifest, out)?)
     }
 
-    /// Writes that a campaign came to nothing, unless the file's directory is not there: a run that wrote nothing makes none.
+    /// Writes that a campaign came to nothing, unless the file's directory is not there: a run that wrote nothing makes
+    /// none.
     pub(super) fn write_error(&self, campaign: &str, failure: &Failure) -> Result<(), Failure> {
         if !self.0.has_place() {
             return Ok(());
@@ -43,8 +44,8 @@ fn not_written(error: OutputError) -> Failure {
 }
 
 impl RunArguments {
-    /// The file of `--junit`, of which nothing is left from an earlier run: one that is killed must not look as if it had passed.
-    /// `out` is the run's directory, if it is known.
+    /// The file of `--junit`, of which nothing is left from an earlier run: one that is killed must not look as if it
+    /// had passed. `out` is the run's directory, if it is known.
     pub(super) fn junit_file(&self, out: Option<&Path>) -> Result<Option<JunitFile>, Failure> {
         let Some(path) = &self.junit else {
             return Ok(None);

@@ -73,8 +73,8 @@ impl Episode {
 }
 
 impl AgentDraw {
-    /// The same with its times as they happen, in whole steps, which is how tables and rankings show them: an onset is the time
-    /// of the step with which something begins, a length is so many steps.
+    /// The same with its times as they happen, in whole steps, which is how tables and rankings show them: an onset is
+    /// the time of the step with which something begins, a length is so many steps.
     #[must_use]
     pub fn applied(&self, campaign: &Campaign) -> Self {
         let time = campaign.time;
@@ -342,10 +342,10 @@ impl Draws<'_> {
     }
 }
 
-/// The dimension of a design that stands for the address of a quantity: a number that depends on nothing else, so that it stays
-/// when a campaign gets another fault. Nets are balanced best within four dimensions from a multiple of four on; these are the
-/// parameters of a channel's disturbance, those of an agent's fault, and the masses, coupling and error that a quantity of the
-/// stream `Initial` begins with.
+/// The dimension of a design that stands for the address of a quantity: a number that depends on nothing else, so that
+/// it stays when a campaign gets another fault. Nets are balanced best within four dimensions from a multiple of four
+/// on; these are the parameters of a channel's disturbance, those of an agent's fault, and the masses, coupling and
+/// error that a quantity of the stream `Initial` begins with.
 fn dimension(address: Address) -> u32 {
     const INDEX_BITS: u32 = 7;
     const MEMBER_BITS: u32 = 12;

@@ -1,8 +1,8 @@
 //! What an episode met, one number per quantity of the campaign: what the ranking relates to the outcomes.
 //!
-//! The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean square
-//! over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean. Times are those at
-//! which things happen, in whole steps, as in the tables.
+//! The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean
+//! square over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
+//! Times are those at which things happen, in whole steps, as in the tables.
 
 use super::{AgentDraw, Episode, FaultDraw};
 use crate::agent::Agent;

@@ -111,7 +111,8 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         [position, velocity]
     }
 
-    /// u_fb at the state of stage `STAGE` of step number `step`: a sampled controller holds it from one of its ticks to the next.
+    /// u_fb at the state of stage `STAGE` of step number `step`: a sampled controller holds it from one of its ticks to
+    /// the next.
     #[inline(always)]
     pub(crate) fn feedback<P, const STAGE: usize>(
         &self,
@@ -153,7 +154,8 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             Coupling::Centroid => {
                 let share = L::number(1.0 / team.size as f64);
                 for c in 0..NC {
-                    // The same with x counted from the centroid, where all sum up to zero: the others' are minus one's own.
+                    // The same with x counted from the centroid, where all sum up to zero: the others' are minus one's
+                    // own.
                     let from_centroid = team.sum[c].mul_add(-share, position[c]);
                     force[c] = (from_centroid * -self.kappa).mul_add(from_centroid, force[c]);
                 }

@@ -1,8 +1,9 @@
 //! The controller of one channel: observer (20) and feedback (21), in the form that is integrated.
 //!
-//! A channel's state is [int e, e, e', observer]: errors are small numbers, so single precision keeps their digits. The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact
-//! reduction of the 12 of (19): the taps beyond the second are a delay line that never feeds back. The observer of a PID has
-//! the 3 states ehat. A controller that measures without error has none.
+//! A channel's state is [int e, e, e', observer]: errors are small numbers, so single precision keeps their digits. The
+//! observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact reduction of the 12 of (19): the taps beyond
+//! the second are a delay line that never feeds back. The observer of a PID has the 3 states ehat. A controller that
+//! measures without error has none.
 
 use super::integrator::{Step, Stepped};
 use super::lanes::{Lane, Real};
@@ -102,8 +103,8 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
     sum
 }
 
-/// Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)], each row taken as soon as it is known,
-/// so that few values live at once.
+/// Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)], each row taken as soon as it is
+/// known, so that few values live at once.
 ///
 /// `told` is the feedback that the observer is told was commanded.
 #[inline(always)]

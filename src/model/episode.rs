@@ -103,8 +103,8 @@ impl<R: Real> Controller<R> {
 }
 
 impl Controller<f64> {
-    /// A controller that measures without error: u_fb = K [int e, e, e']' with the K of each channel group. It shows the
-    /// plant apart from any observer, in double precision; no campaign names it.
+    /// A controller that measures without error: u_fb = K [int e, e, e']' with the K of each channel group. It shows
+    /// the plant apart from any observer, in double precision; no campaign names it.
     #[must_use]
     pub fn true_state(groups: &[[f64; 3]]) -> Self {
         Self {

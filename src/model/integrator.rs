@@ -1,5 +1,5 @@
-//! The classical fourth-order Runge-Kutta method (Hairer, Norsett, Wanner, Solving ODEs I, section II.1), with the weighted
-//! sum of the slopes kept instead of the slopes themselves.
+//! The classical fourth-order Runge-Kutta method (Hairer, Norsett, Wanner, Solving ODEs I, section II.1), with the
+//! weighted sum of the slopes kept instead of the slopes themselves.
 
 use super::lanes::{Lane, Real};
 

@@ -39,8 +39,9 @@ pub(crate) struct Sample<L> {
     pub(crate) sensor_fault_error: L,
 }
 
-/// The metrics of one channel of one episode. Averages and sums are over the steps from settle_s on, each step counted at its
-/// start; effort, largest command and limited share are over the whole run. The command u is that of [`super::ChannelSample`].
+/// The metrics of one channel of one episode. Averages and sums are over the steps from settle_s on, each step counted
+/// at its start; effort, largest command and limited share are over the whole run. The command u is that of
+/// [`super::ChannelSample`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ChannelOutcome {
     /// Root mean square of e.
@@ -180,8 +181,8 @@ impl<L: Lane> Metrics<L> {
 }
 
 impl Metrics<f32> {
-    /// The metrics that the shaders kept: the sums in the order of [`Sums`], with nothing recent left; steps are -1 where
-    /// there is none.
+    /// The metrics that the shaders kept: the sums in the order of [`Sums`], with nothing recent left; steps are -1
+    /// where there is none.
     pub(crate) fn kept(
         [
             square,

@@ -1,8 +1,8 @@
 //! The closed loop of an episode: plant, observer, controller, faults and metrics, generic over the lane type.
 //!
-//! The flow of one step is `group`: what is held (`signal`), the four stages of `integrator`, in which each `agent`'s `plant`
-//! answers its `controller`, and the sums of `metric`. [`episode`] builds groups from draws (`condition`, `fault`) and collects
-//! their outcomes.
+//! One step is `team`: what is held over the step (`exogenous`), the four stages of `integrator`, in which each
+//! `agent`'s `plant` answers its `controller`, and the sums of `metric`. [`episode`] builds teams from draws (`inputs`)
+//! and collects their outcomes.
 //!
 #![doc = include_str!("README.md")]
 

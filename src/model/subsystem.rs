@@ -105,8 +105,8 @@ fn agent_rows<R: Real>(campaign: &Campaign, agent: usize, t_s: f64) -> Vec<Refer
     rows.into_iter().map(|row| row.map(R::from_f64)).collect()
 }
 
-/// Under thrust, roll and pitch have no reference: they follow from the force, and the feedforward of the attitude is worked
-/// out in the loop.
+/// Under thrust, roll and pitch have no reference: they follow from the force, and the feedforward of the attitude is
+/// worked out in the loop.
 fn uav_rows(uav: &Uav, points: &[ReferencePoint]) -> Vec<ReferenceRow<f64>> {
     let inertia = inertia(uav);
     let non_inertial = non_inertial(uav, std::array::from_fn(|c| points[c].rate));

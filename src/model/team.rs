@@ -1,7 +1,7 @@
 //! A group of channels of a whole team, integrated for a block of episodes.
 //!
-//! Groups are the parts of an episode that never act on each other (see the plants), so each is integrated from start to end
-//! on its own, while all it needs stays in the first-level cache.
+//! Groups are the parts of an episode that never act on each other (see the plants), so each is integrated from start
+//! to end on its own, while all it needs stays in the first-level cache.
 
 #![expect(
     clippy::needless_range_loop,
@@ -358,8 +358,8 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
     }
 }
 
-/// Makes sums over a team, or an agent's place, finite, so that an agent that diverged leaves those alone on whom it acts with a
-/// strength of zero.
+/// Makes sums over a team, or an agent's place, finite, so that an agent that diverged leaves those alone on whom it
+/// acts with a strength of zero.
 #[inline(always)]
 pub(crate) fn finite<L: Lane, const NC: usize>(sums: &mut [L; NC]) {
     let (low, high) = (L::number(-FAR_AWAY), L::number(FAR_AWAY));

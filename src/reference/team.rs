@@ -27,8 +27,8 @@ pub enum Reference {
 pub struct AgentWalk {
     /// The walk; robots that go the same way share it.
     pub walk: Arc<Walk>,
-    /// The time of the walk's beginning, s. Before it the robot stands, as after its end; a robot that began before 0 is on
-    /// its way.
+    /// The time of the walk's beginning, s. Before it the robot stands, as after its end; a robot that began before 0
+    /// is on its way.
     pub start_s: f64,
 }
 

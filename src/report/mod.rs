@@ -1,6 +1,7 @@
 //! The report of a run: a page that opens from disk, and the same in Markdown, made of the run's directory alone.
 //!
-//! Run data (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it looks).
+//! Run data (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it
+//! looks).
 
 mod episode;
 pub mod junit;

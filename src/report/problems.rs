@@ -1,4 +1,5 @@
-//! What is wrong with a run, in words, as its manifest tells: why it is not to be relied on, and which requirements do not hold.
+//! What is wrong with a run, in words, as its manifest tells: why it is not to be relied on, and which requirements do
+//! not hold.
 
 use crate::campaign::ALL;
 use crate::results::RequirementResult;
@@ -9,8 +10,8 @@ use crate::statistics::{runs_needed, sequential_runs_needed};
 use crate::util::format::rounded_up;
 use std::path::Path;
 
-/// Why the result of a run, written to `out`, is not to be relied on, one reason a line: episodes are missing, or the cross-check
-/// could not be done or found too much; none if nothing is wrong.
+/// Why the result of a run, written to `out`, is not to be relied on, one reason a line: episodes are missing, or the
+/// cross-check could not be done or found too much; none if nothing is wrong.
 #[must_use]
 pub fn shortcoming(manifest: &Manifest, out: &Path) -> Option<String> {
     let all: Vec<String> = [
@@ -52,7 +53,7 @@ pub(crate) fn differing(manifest: &Manifest) -> Option<String> {
     failed.map(|check| {
         format!(
             "the cross-check fails: |e| differs by {:.1e} (limit {ERROR_LIMIT:.0e}), the RMS error by {:.1e} relative \
-             (limit {RMSE_LIMIT:.0e}), {} verdicts without being near a threshold (limit 0), {} flights give other \
+             (limit {RMSE_LIMIT:.0e}), {} verdicts without being near a threshold (limit 0), {} episodes give other \
              numbers when repeated (limit 0); use --backend cpu, and please report this",
             check.largest_error_difference,
             check.largest_rmse_difference,

@@ -83,8 +83,8 @@ impl RunData {
             .collect()
     }
 
-    /// The RMS over the team of a column for each episode under each controller, `[controller][episode]`: infinite where an
-    /// agent diverged. Rows that `wanted` refuses are left out.
+    /// The RMS over the team of a column for each episode under each controller, `[controller][episode]`: infinite
+    /// where an agent diverged. Rows that `wanted` refuses are left out.
     pub(crate) fn of_teams(
         &self,
         sheet: &TableReader,

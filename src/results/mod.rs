@@ -1,12 +1,13 @@
 //! What the scores of a run say: how each controller fared, how each pair of them compares, and which fault hurts most.
 //!
-//! The sample unit is the episode. Metrics are compared in the logarithm, channel by channel or averaged over the channels of
-//! one unit and over the team. A diverged episode has an infinite metric; where both controllers diverge the pair is a tie.
+//! The sample unit is the episode. Metrics are compared in the logarithm, channel by channel or averaged over the
+//! channels of one unit and over the team. A diverged episode has an infinite metric; where both controllers diverge
+//! the pair is a tie.
 //!
-//! Everything is said of all episodes together, then of each stratum. What is said of all is about the campaign's own mixture;
-//! that each stratum has its share exactly, and not by chance, makes its intervals cautious, if anything (Hoeffding 1956, Annals
-//! of Mathematical Statistics 27:713-721). Intervals and tests that the sampling design does not allow
-//! ([`crate::random::allows`]) are absent; Student's t over the design's replicates takes the place of some.
+//! Everything is said of all episodes together, then of each stratum. What is said of all is about the campaign's own
+//! mixture; that each stratum has its share exactly, and not by chance, makes its intervals cautious, if anything
+//! (Hoeffding 1956, Annals of Mathematical Statistics 27:713-721). Intervals and tests that the sampling design does
+//! not allow ([`crate::random::allows`]) are absent; Student's t over the design's replicates takes the place of some.
 
 mod columns;
 mod paired;

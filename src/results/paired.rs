@@ -54,8 +54,8 @@ pub struct Ratio {
     pub name: Arc<str>,
     /// Median over the episodes of ln(rmse of b / rmse of a), averaged over the team and over the channels of a group.
     pub log_ratio: Option<Measured>,
-    /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is the mean of
-    /// their medians.
+    /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is
+    /// the mean of their medians.
     pub over_replicates: Option<Replicated>,
     /// Mid-p of the sign test of that median, of independent draws.
     pub sign_p: Option<f64>,
@@ -66,8 +66,8 @@ pub struct Ratio {
 }
 
 impl PairedComparison {
-    /// The difference of the failure rates with the interval that the sampling design allows: over its replicates where it has
-    /// them.
+    /// The difference of the failure rates with the interval that the sampling design allows: over its replicates where
+    /// it has them.
     #[must_use]
     pub fn known(&self) -> Option<Measured> {
         known(self.difference, self.over_replicates)
@@ -242,8 +242,8 @@ fn ratio(
     }
 }
 
-/// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them diverged,
-/// 0 where both did.
+/// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them
+/// diverged, 0 where both did.
 pub(super) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
     let of_episode = |episode: usize| {
         let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;

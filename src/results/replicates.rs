@@ -14,8 +14,8 @@ pub struct Replicated {
     pub p: f64,
 }
 
-/// Student's t over the estimates of replicates; none of too few, of any that is infinite, and of replicates that are all alike:
-/// such as have no failure show no scatter, and an interval of no width would claim certainty.
+/// Student's t over the estimates of replicates; none of too few, of any that is infinite, and of replicates that are
+/// all alike: such as have no failure show no scatter, and an interval of no width would claim certainty.
 #[expect(clippy::float_cmp, reason = "equal estimates, of which rates have few")]
 pub(super) fn over_replicates(estimates: &[f64]) -> Option<Replicated> {
     let alike = estimates.windows(2).all(|pair| pair[0] == pair[1]);

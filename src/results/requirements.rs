@@ -16,8 +16,8 @@ pub struct RequirementResult {
     pub stratum: String,
     /// The required bound: `failure_rate_upper_95`.
     pub limit: f64,
-    /// The bound of the failure rate that was found, one-sided, 95 %: Clopper-Pearson's, or that of the confidence sequence where
-    /// the campaign has a `[stop]`.
+    /// The bound of the failure rate that was found, one-sided, 95 %: Clopper-Pearson's, or that of the confidence
+    /// sequence where the campaign has a `[stop]`.
     pub upper_95: f64,
     /// Episodes of the stratum.
     pub n: u64,

@@ -67,8 +67,8 @@ impl Scores {
         self.status.first().map_or(0, Vec::len)
     }
 
-    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that are none
-    /// are all alike.
+    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that
+    /// are none are all alike.
     #[must_use]
     pub fn holds(
         &self,

@@ -1,9 +1,10 @@
 //! Which fault hurts which controller most.
 //!
-//! Strata are independent samples, so what a fault does is the difference between its stratum and a reference: the stratum
-//! without faults where there is one. Which stratum is the worst is told by comparing it with all others (Hsu 1981, Annals of
-//! Statistics 9:1026-1034): one is ruled out if another is worse by a one-sided interval at 1 - 5 % / (k - 1), of k strata. The
-//! stratum that is truly the worst meets k - 1 others, so it is ruled out with a probability of 5 % at most, whichever it is.
+//! Strata are independent samples, so what a fault does is the difference between its stratum and a reference: the
+//! stratum without faults where there is one. Which stratum is the worst is told by comparing it with all others (Hsu
+//! 1981, Annals of Statistics 9:1026-1034): one is ruled out if another is worse by a one-sided interval at 1 - 5 % /
+//! (k - 1), of k strata. The stratum that is truly the worst meets k - 1 others, so it is ruled out with a probability
+//! of 5 % at most, whichever it is.
 
 use super::scores::Scores;
 use super::strata::{Subset, parts};
@@ -24,8 +25,8 @@ pub struct Screening {
     pub reference: Arc<str>,
     /// The other strata with certain faults, in the campaign's order.
     pub harms: Vec<FaultEffect>,
-    /// The strata (of `harms`, by index) that cannot be told apart, at 95 %, from the one that fails most often, which is the
-    /// first.
+    /// The strata (of `harms`, by index) that cannot be told apart, at 95 %, from the one that fails most often, which
+    /// is the first.
     pub most_failures: Vec<usize>,
     /// The same for the growth of the errors, by channel group.
     pub most_growth: Vec<Vec<usize>>,

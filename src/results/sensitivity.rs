@@ -15,8 +15,9 @@ use std::sync::Arc;
 
 /// Fewest random permutations of a test.
 const PERMUTATIONS: u32 = 4_000;
-/// Permutations for each condition of a family: so many that the smallest p-value of a condition, which is tested in two ways, is
-/// a third of the 5 % after Holm's correction for the family. Fewer, and no effect however strong could be called sure.
+/// Permutations for each condition of a family: so many that the smallest p-value of a condition, which is tested in
+/// two ways, is a third of the 5 % after Holm's correction for the family. Fewer, and no effect however strong could be
+/// called sure.
 const PER_CONDITION: usize = 120;
 /// Worst episodes that are listed of each controller.
 const WORST: usize = 10;
@@ -45,8 +46,8 @@ pub struct SensitivityResult {
     pub effect: Effect,
     /// Interval of the trend, of independent draws.
     pub interval: Option<Interval>,
-    /// p-value of no effect, after Holm's correction for all conditions of the target; where permutations are a test of it: of
-    /// independent draws and within one hypercube.
+    /// p-value of no effect, after Holm's correction for all conditions of the target; where permutations are a test of
+    /// it: of independent draws and within one hypercube.
     pub p_holm: Option<f64>,
 }
 
@@ -117,7 +118,7 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
                 target: target.clone(),
                 condition: (*name).clone(),
                 effect,
-                // Of a few episodes it may be all there is.
+                // With few episodes the interval may be all of [-1, 1]; then it is omitted.
                 interval: Some(effect.trend.interval)
                     .filter(|own| with_interval && (own.lower > -1.0 || own.upper < 1.0)),
                 p_holm: tested.then_some(p_holm),
@@ -133,9 +134,9 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
         .collect()
 }
 
-/// A condition where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and what
-/// goes with the number (the first onset, the mean over more channels) would be taken for what goes with the stratum: where
-/// some strata draw their faults, faults are ranked in those only.
+/// A condition where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and
+/// what goes with the number (the first onset, the mean over more channels) would be taken for what goes with the
+/// stratum: where some strata draw their faults, faults are ranked in those only.
 pub(crate) fn by_chance(
     campaign: &Campaign,
     condition: &str,
@@ -200,8 +201,8 @@ fn targets(campaign: &Campaign, scores: &Scores) -> Vec<(Target, Outcome)> {
     targets
 }
 
-/// The worst episodes of each controller, worst first: by how they ended, then by the largest error over its limit; of those that
-/// diverged, the earlier the worse.
+/// The worst episodes of each controller, worst first: by how they ended, then by the largest error over its limit; of
+/// those that diverged, the earlier the worse.
 #[must_use]
 pub fn worst(campaign: &Campaign, scores: &Scores) -> Vec<WorstEpisode> {
     let of_controller = |(index, name): (usize, &String)| {
@@ -237,7 +238,7 @@ impl Bad {
         let step = |agent: usize| steps[agent].unwrap_or(u32::MAX);
         let first = (0..team).min_by_key(|&agent| step(agent)).unwrap_or(0);
         let errors = &scores.max_abs[controller][episode * team * channels..];
-        // Whom a flight that diverges pulls along is not to blame.
+        // If an episode diverges, only its first failing agent counts: it may have pulled the others along.
         let agents = match status {
             Status::Diverged => first..first + 1,
             Status::Ok | Status::Exceeded => 0..team,

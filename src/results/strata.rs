@@ -11,8 +11,8 @@ pub(crate) struct Subset {
     pub(crate) episodes: Vec<usize>,
 }
 
-/// All episodes, then those of each stratum. Where the campaign is not divided, those with and without each fault that only some
-/// episodes have.
+/// All episodes, then those of each stratum. Where the campaign is not divided, those with and without each fault that
+/// only some episodes have.
 pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Subset> {
     let all: Vec<usize> = (0..scores.episodes()).collect();
     let mut parts = vec![Subset {

@@ -17,8 +17,8 @@ use std::sync::Arc;
 /// The quantiles of the summary.
 const QUANTILES: [f64; 3] = [0.5, 0.95, 0.99];
 
-/// How often a controller failed in a stratum, with the one interval that holds: by the design of the draws and by who decides
-/// on the number of episodes.
+/// How often a controller failed in a stratum, with the one interval that holds: by the design of the draws and by who
+/// decides on the number of episodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailureRate {
     /// Name of the controller.
@@ -37,7 +37,8 @@ pub struct FailureRate {
     pub sequential: Option<Interval>,
     /// Student's t over the replicates of a sampling design, if there are enough of them.
     pub replicates: Option<Interval>,
-    /// One-sided 95 % bound of the failure rate, of independent draws: Clopper-Pearson's, or that of the confidence sequence.
+    /// One-sided 95 % bound of the failure rate, of independent draws: Clopper-Pearson's, or that of the confidence
+    /// sequence.
     pub upper_95: Option<f64>,
 }
 
@@ -119,7 +120,8 @@ pub struct MetricQuantiles {
     pub metric: &'static str,
     /// "position" (m), "attitude" or "joints" (rad).
     pub group: &'static str,
-    /// Each of the quantiles, with its order-statistic interval where the design allows one and there are episodes enough.
+    /// Each of the quantiles, with its order-statistic interval where the design allows one and there are episodes
+    /// enough.
     pub quantiles: Vec<(f64, Option<f64>, Option<Interval>)>,
 }
 

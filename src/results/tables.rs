@@ -204,7 +204,8 @@ impl<'a> AgentVerdict<'a> {
             .map(|step| f64::from(step) * time.step_s)
     }
 
-    /// How long after the first fault the error went below the settled error for good; absent without a fault or if it did not.
+    /// How long after the first fault the error went below the settled error for good; absent without a fault or if it
+    /// did not.
     fn recovery_s(&self, time: Time, metrics: &ChannelOutcome) -> Option<f64> {
         let fault = self.first_fault?;
         let calm = self.calm_from(metrics.last_outside, time.steps)?;
@@ -262,7 +263,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
             );
         }
         let mut of_time = |name: &str, time_s: f64| {
-            let time_s = drawn.occurs().then_some(time_s).unwrap_or(f64::NAN);
+            let time_s = if drawn.occurs() { time_s } else { f64::NAN };
             row.real(|| format!("fault{index}_{name}"), time_s);
         };
         of_time("onset_s", drawn.onset_s);

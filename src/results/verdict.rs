@@ -27,10 +27,10 @@ pub fn how_sure(campaign: &Campaign) -> String {
     )
 }
 
-/// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how often it
-/// fails if it is the only one. "Better" and "worse" are said where the 95 % interval and a test (McNemar's mid-p of the failures,
-/// the sign test of the errors, Student's t over the replicates of a design; at 5 % over the number of all that is looked at) leave
-/// no doubt; each sentence has the numbers that it stands on.
+/// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how
+/// often it fails if it is the only one. "Better" and "worse" are said where the 95 % interval and a test (McNemar's
+/// mid-p of the failures, the sign test of the errors, Student's t over the replicates of a design; at 5 % over the
+/// number of all that is looked at) leave no doubt; each sentence has the numbers that it stands on.
 #[must_use]
 pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
     let first = comparisons.first().map(|own| &own.a);
@@ -50,7 +50,7 @@ fn of_one(row: &MetricQuantiles) -> String {
     let rate = &row.failures;
     let (name, failed, n) = (&rate.controller, rate.failed(), rate.n);
     let known = match (rate.upper_95, rate.interval()) {
-        // Of one that fails often, an upper bound says nothing.
+        // Above 50 % failures the interval is reported in place of the upper bound.
         (Some(upper), _) if 2 * failed <= n => {
             format!("is below {} %", rounded_up(100.0 * upper, 2))
         }
@@ -226,7 +226,7 @@ fn times(log_ratio: f64, interval: Option<Interval>) -> String {
     if log_ratio == 0.0 || interval.is_none() && number(log_ratio) == "1.00" {
         "as large".to_string()
     } else if log_ratio.is_infinite() {
-        format!("{word} beyond measure{ends}, as a diverged flight counts,")
+        format!("infinitely {word}{ends} (diverged episodes count as infinite),")
     } else {
         format!("{} times {word}{ends}", number(log_ratio))
     }

@@ -6,8 +6,8 @@ use crate::statistics::Estimate;
 /// Names that a sentence lists.
 const MOST_NAMES: usize = 3;
 
-/// What the strata do to each controller, against which of them, each in a sentence with the numbers that it stands on; what may
-/// be no change is said to be so.
+/// What the strata do to each controller, against which of them, each in a sentence with the numbers that it stands on;
+/// what may be no change is said to be so.
 #[must_use]
 pub fn harm(screenings: &[Screening]) -> Vec<String> {
     screenings.iter().flat_map(of_controller).collect()

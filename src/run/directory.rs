@@ -17,8 +17,8 @@ const ROW_GROUP: usize = 1 << 18;
 pub struct OutputDir(PathBuf);
 
 impl OutputDir {
-    /// Claims a directory before any work is done. It may be absent, empty, hold a run of the same campaign text and seed
-    /// with no more episodes, or what is left of an unfinished run; anything else is refused unless `overwrite`.
+    /// Claims a directory before any work is done. It may be absent, empty, hold a run of the same campaign text and
+    /// seed with no more episodes, or what is left of an unfinished run; anything else is refused unless `overwrite`.
     ///
     /// # Errors
     /// If the directory holds something else or cannot be written. Nothing is left behind then.
@@ -154,8 +154,8 @@ impl OutputDir {
         })
     }
 
-    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled, and
-    /// what the new run may not replace.
+    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled,
+    /// and what the new run may not replace.
     ///
     /// # Errors
     /// If there is something and it cannot be removed.
@@ -204,7 +204,8 @@ impl OutputFile {
     /// Finds out whether a file can be written before any work is done; replaces nothing yet.
     ///
     /// # Errors
-    /// If it is a directory or another thing that is no file, or its directory cannot be written. Nothing is left behind then.
+    /// If it is a directory or another thing that is no file, or its directory cannot be written. Nothing is left
+    /// behind then.
     pub fn claim(path: &Path) -> Result<Self, OutputError> {
         let unwritable = |source| OutputError::Unwritable {
             path: path.to_path_buf(),

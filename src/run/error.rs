@@ -18,8 +18,8 @@ pub const TABLES: [&str; 7] = [
 /// The reports of a run.
 pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
 
-/// File name of the manifest, which is written after all tables: a directory that has one holds all episodes that it counts. Only
-/// the reports, which are made of the directory, come after it.
+/// File name of the manifest, which is written after all tables: a directory that has one holds all episodes that it
+/// counts. Only the reports, which are made of the directory, come after it.
 pub const MANIFEST: &str = "manifest.json";
 
 /// Why a run cannot be written or read.

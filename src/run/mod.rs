@@ -103,8 +103,8 @@ pub struct Extras {
 /// Episodes of a GPU's run that are flown again on the reference, if nothing else is asked for.
 pub const GPU_CROSS_CHECK: u32 = 32;
 
-/// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the findings
-/// say so. `told` hears what the run is at.
+/// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the
+/// findings say so. `told` hears what the run is at.
 ///
 /// # Errors
 /// If gains cannot be had, nothing can be flown, or files cannot be written.

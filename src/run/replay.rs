@@ -76,8 +76,9 @@ pub struct OtherController {
     pub snapshots: Vec<Snapshot>,
 }
 
-/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and under
-/// the campaign's other controllers beside it, and shows it every `interval_s` (10 ms, or as near as the step allows).
+/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and
+/// under the campaign's other controllers beside it, and shows it every `interval_s` (10 ms, or as near as the step
+/// allows).
 ///
 /// # Errors
 /// If the directory holds no run, or the run has no such episode or controller.
@@ -126,7 +127,7 @@ pub fn replay(
         None => {
             return Err(OutputError::NoRun {
                 path: dir.to_path_buf(),
-                reason: format!("{MANIFEST}: legs does not say what flew episode {episode}"),
+                reason: format!("{MANIFEST}: legs does not say what simulated episode {episode}"),
             }
             .into());
         }
@@ -163,7 +164,7 @@ pub fn replay(
 #[must_use]
 pub fn command(dir: &Path, episode: u32, controller: &str) -> String {
     let dir = dir.display().to_string();
-    // A directory is no option.
+    // `./` keeps a name that begins with `-` from being read as an option.
     let dir = if dir.starts_with('-') {
         format!("./{dir}")
     } else {

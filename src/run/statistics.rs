@@ -56,8 +56,8 @@ impl Statistics {
             ("ranking", &ranking, true),
             ("worst", &worst, true),
         ] {
-            // One controller has nothing to be compared with; without strata nothing is screened; where nothing varies, nothing
-            // is ranked.
+            // One controller has nothing to be compared with; without strata nothing is screened; where nothing varies,
+            // nothing is ranked.
             if table.is_empty() {
                 continue;
             }

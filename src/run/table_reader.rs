@@ -6,7 +6,8 @@ use std::collections::HashMap;
 use std::fs::File;
 use std::path::Path;
 
-/// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far as they go.
+/// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far
+/// as they go.
 #[derive(Debug, Default)]
 pub(crate) struct TableReader {
     names: Vec<String>,

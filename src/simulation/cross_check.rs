@@ -17,21 +17,22 @@ use serde::{Deserialize, Serialize};
 use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
-/// Largest difference of |e| between backends, m or rad (model.md, section 7): what single precision costs is 20 times less.
+/// Largest difference of |e| between backends, m or rad (the contract between backends): what single precision costs is
+/// 20 times less.
 pub const ERROR_LIMIT: f64 = 2e-4;
 /// Largest difference of an RMS error between backends, relative to it or to [`RMSE_FLOOR`], whichever is larger.
 pub const RMSE_LIMIT: f64 = 1e-4;
-/// An RMS error below this, m or rad, is compared as if it were this large: single precision alone, on the CPU as on a GPU,
-/// costs up to 2e-6 m of the smallest errors (1 cm over short times), which is more than 1e-4 of them. Together the limits let
-/// 5e-6 m pass, a fortieth of [`ERROR_LIMIT`].
+/// An RMS error below this, m or rad, is compared as if it were this large: single precision alone, on the CPU as on a
+/// GPU, costs up to 2e-6 m of the smallest errors (1 cm over short times), which is more than 1e-4 of them. Together
+/// the limits let 5e-6 m pass, a fortieth of [`ERROR_LIMIT`].
 pub const RMSE_FLOOR: f64 = 0.05;
-/// By how much the feedback gains are raised in a flight that shows how sensitive another is, relative: what single precision loses
-/// over some hundred operations, in every step.
+/// By how much the feedback gains are raised in a flight that shows how sensitive another is, relative: what single
+/// precision loses over some hundred operations, in every step.
 const NUDGE: f64 = 1e-6;
-/// A flight is sensitive if such a nudge, in double precision, moves it by more than this share of the limits. Others move by some
-/// hundredths of them, as errors change with the gains. A loop that a limit of rate, a delay or lost messages keep in a bounded
-/// oscillation without a period is sensitive: there every difference grows, and no two number formats agree for long, however right
-/// both are.
+/// A flight is sensitive if such a nudge, in double precision, moves it by more than this share of the limits. Others
+/// move by some hundredths of them, as errors change with the gains. A loop that a limit of rate, a delay or lost
+/// messages keep in a bounded oscillation without a period is sensitive: there every difference grows, and no two
+/// number formats agree for long, however right both are.
 const SENSITIVE_SHARE: f64 = 0.1;
 /// Instants at which the errors are compared, besides their maxima over all steps.
 const SAMPLES: u32 = 256;
@@ -48,8 +49,8 @@ pub struct CrossCheck {
     pub episodes: Vec<u32>,
     /// Pairs of episode and controller whose errors were compared: neither backend fails or saturates in them.
     pub compared: usize,
-    /// Pairs that differ by more than the limits and are left out, since the reference itself differs as much from one whose
-    /// gains are a millionth larger.
+    /// Pairs that differ by more than the limits and are left out, since the reference itself differs as much from one
+    /// whose gains are a millionth larger.
     #[serde(default)]
     pub sensitive: usize,
     /// Largest difference of |e|, m or rad.
@@ -62,7 +63,8 @@ pub struct CrossCheck {
     pub verdicts_differ_clearly: usize,
     /// Pairs that give other numbers than those in the tables when they fly again on the run's own engine.
     pub not_repeated: usize,
-    /// What inequality (24) says about these episodes, by controller and channel group; empty in runs of older versions.
+    /// What inequality (24) says about these episodes, by controller and channel group; empty in runs of older
+    /// versions.
     #[serde(default)]
     pub attenuation: Vec<GroupAttenuation>,
 }
@@ -81,8 +83,8 @@ impl CrossCheck {
     }
 }
 
-/// Flies `count` random episodes of a leg again, on its own engine and on the CPU in double precision: the former must give
-/// the numbers of the tables, `scores`, to the last digit, the latter nearly the same.
+/// Flies `count` random episodes of a leg again, on its own engine and on the CPU in double precision: the former must
+/// give the numbers of the tables, `scores`, to the last digit, the latter nearly the same.
 ///
 /// # Errors
 /// If the GPU fails.
@@ -99,7 +101,7 @@ pub fn cross_check(
     let every = campaign.time.steps.div_ceil(SAMPLES);
     let loops = gains.loops();
     let reference = Cpu::new(campaign, &loops, Precision::F64, None);
-    // Few runs need it.
+    // Built only when it is needed.
     let nudged = LazyCell::new(|| Cpu::new(campaign, &nudged(&loops), Precision::F64, None));
     let mut engine = match (&leg.engine, gpu) {
         (Engine::Gpu { .. }, Some(gpu)) => {
@@ -395,8 +397,8 @@ mod tests {
                 let [own, moved] =
                     [&reference, &nudged].map(|cpu| trace(cpu, episode, controller, 10));
                 let difference = Difference::between(&moved, &own);
-                // A PID's error goes with its gains, so that the RMS error changes by about 1e-6 of itself: far from a tenth of
-                // the limit of 1e-4.
+                // A PID's error goes with its gains, so that the RMS error changes by about 1e-6 of itself: far from a
+                // tenth of the limit of 1e-4.
                 assert!(!difference.exceeds(0.5 * SENSITIVE_SHARE), "{difference:?}");
                 assert!(difference.error > 0.0 && difference.rmse > 0.0);
             }

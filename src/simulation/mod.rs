@@ -23,10 +23,12 @@ use std::time::Instant;
 use stopping::StoppingRule;
 use thiserror::Error;
 
-/// Episodes of the CPU between two additions to the tables: enough to keep many cores busy, few enough to keep memory small.
+/// Episodes of the CPU between two additions to the tables: enough to keep many cores busy, few enough to keep memory
+/// small.
 const CPU_BATCH: u32 = 2048;
 
-/// Episodes of the CPU between two additions, at least, where they may be the last: sixteen lanes on each of sixteen threads.
+/// Episodes of the CPU between two additions, at least, where they may be the last: sixteen lanes on each of sixteen
+/// threads.
 const LOOK_BATCH: u32 = 256;
 
 /// Where the episodes are to fly.
@@ -201,8 +203,8 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
 /// Flies a campaign with gains at hand, on a GPU if one is given; `done` is told of finished episodes.
 ///
 /// # Errors
-/// If the threads cannot be started, or a GPU is asked for and flies nothing. A GPU that fails later leaves the episodes that
-/// it finished: the CPU flies the others if it may, else they are missing and the flight says why.
+/// If the threads cannot be started, or a GPU is asked for and flies nothing. A GPU that fails later leaves the
+/// episodes that it finished: the CPU flies the others if it may, else they are missing and the flight says why.
 pub fn fly(
     campaign: &Campaign,
     gains: &GainSet,

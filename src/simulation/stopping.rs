@@ -1,8 +1,8 @@
 //! Early stop: watching a run's failures until what is to be known of them is known.
 //!
-//! The bounds are confidence sequences ([`crate::statistics::sequential_upper`]): they hold at all numbers of episodes together,
-//! so a run may be looked at as often as one likes and end at any look. Looks are at fixed numbers of episodes, so a campaign
-//! ends at the same episode whatever the batches and threads.
+//! The bounds are confidence sequences ([`crate::statistics::sequential_upper`]): they hold at all numbers of episodes
+//! together, so a run may be looked at as often as one likes and end at any look. Looks are at fixed numbers of
+//! episodes, so a campaign ends at the same episode whatever the batches and threads.
 
 use crate::campaign::{Campaign, Goal, Stop};
 use crate::results::scores::Status;
@@ -39,8 +39,8 @@ pub struct Stopped {
 }
 
 impl Stop {
-    /// The levels of the lower and of the upper bound. A single goal about one side spends all doubt on that side, all others
-    /// share it; so with probability `confidence` none of the goals is ever taken to be reached wrongly.
+    /// The levels of the lower and of the upper bound. A single goal about one side spends all doubt on that side, all
+    /// others share it; so with probability `confidence` none of the goals is ever taken to be reached wrongly.
     fn levels(&self) -> (Option<f64>, Option<f64>) {
         let shared = f64::midpoint(1.0, self.confidence);
         match self.goals.as_slice() {

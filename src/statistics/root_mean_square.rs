@@ -2,8 +2,10 @@
 
 /// Root mean square; `None` if there are no values.
 ///
-/// Values of one size give exactly this size, however many there are. The formula alone would not: 0.1 over 12 values gives
-/// 0.10000000000000002, over 4 values 0.1, so that a constant seemed to vary with the number of those that it strikes.
+/// Values of one size give exactly this size, however many there are. The formula alone would not: 0.1 over 12 values
+/// gives 0.10000000000000002, over 4 values 0.1, so that a constant seemed to vary with the number of those that it
+/// strikes.
+#[expect(clippy::float_cmp, reason = "sizes that are equal to the last digit")]
 pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sizes = values.into_iter().map(f64::abs);
     let first = sizes.next()?;

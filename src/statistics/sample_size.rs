@@ -28,8 +28,8 @@ pub fn runs_needed(failure_rate: f64, confidence: f64, failures_allowed: u64) ->
     })
 }
 
-/// The smallest number of runs, up to 2^53, that proves a claim with so many failures in them; each further run makes the proof
-/// easier.
+/// The smallest number of runs, up to 2^53, that proves a claim with so many failures in them; each further run makes
+/// the proof easier.
 pub(super) fn fewest_runs(failures_allowed: u64, proves: impl Fn(u64) -> bool) -> Option<u64> {
     // As many runs as failures prove nothing.
     let mut too_few = failures_allowed;

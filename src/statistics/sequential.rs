@@ -74,8 +74,8 @@ pub fn sequential_interval(failures: u64, n: u64, level: f64) -> Interval {
     }
 }
 
-/// The smallest number of episodes in which `failures_allowed` failures prove with [`sequential_upper`] that the failure rate is
-/// at most `failure_rate`: what [`runs_needed`](super::runs_needed) is for a fixed number of them.
+/// The smallest number of episodes in which `failures_allowed` failures prove with [`sequential_upper`] that the
+/// failure rate is at most `failure_rate`: what [`runs_needed`](super::runs_needed) is for a fixed number of them.
 ///
 /// `None` where no number of episodes up to 2^53 is enough, or for a rate or level outside (0, 1).
 pub fn sequential_runs_needed(failure_rate: f64, level: f64, failures_allowed: u64) -> Option<u64> {

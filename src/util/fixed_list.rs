@@ -1,5 +1,5 @@
-//! Lists of a fixed length in TOML files. TOML's deserializer reads the first N values into serde's arrays and drops the rest
-//! in silence; this one refuses them.
+//! Lists of a fixed length in TOML files. TOML's deserializer reads the first N values into serde's arrays and drops
+//! the rest in silence; this one refuses them.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;

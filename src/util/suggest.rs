@@ -1,4 +1,4 @@
-//! What somebody meant who mistyped a name.
+//! Suggests the closest known name for a misspelt one.
 
 /// The known name that is nearest to an unknown one, if it is near.
 pub(crate) fn nearest<'a>(

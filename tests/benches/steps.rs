@@ -1,10 +1,10 @@
-//! UAV-steps and robot-steps per second and core: one step is one RK4 step of one agent with observers, faults and metrics, six
-//! channels of a UAV or twelve of a robot, whose legs' forward dynamics are also measured alone.
+//! UAV-steps and robot-steps per second and core: one step is one RK4 step of one agent with observers, faults and
+//! metrics, six channels of a UAV or twelve of a robot, whose legs' forward dynamics are also measured alone.
 //!
-//! The draws are those of campaigns/bench-uav.toml and bench-biped.toml, the same work as the hand-written programs count as
-//! 3640 floating-point operations per UAV-step and 24,848 per robot-step under the FTC, 2344 and 22,256 under a PID (a fused
-//! multiply-add counts as two). Time is the thread's processor time, so that other work on the machine shows as little as it
-//! can; compare ratios of one run only.
+//! The draws are those of campaigns/bench-uav.toml and bench-biped.toml, the same work as the hand-written programs
+//! count as 3640 floating-point operations per UAV-step and 24,848 per robot-step under the FTC, 2344 and 22,256 under
+//! a PID (a fused multiply-add counts as two). Time is the thread's processor time, so that other work on the machine
+//! shows as little as it can; compare ratios of one run only.
 
 #![expect(clippy::print_stdout, reason = "the benchmark's result")]
 #![expect(
@@ -54,7 +54,8 @@ fn main() {
     on_gpu(&robots, "robot-steps", &ROBOT_FLOP);
 }
 
-/// The time that the reference tables of robots take, on all cores: limits and the ground's reaction make them the largest.
+/// The time that the reference tables of robots take, on all cores: limits and the ground's reaction make them the
+/// largest.
 fn tables(robots: &Campaign) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/biped-ground-reaction.toml");
     let mut campaign = Campaign::load(&path).expect("the campaign is valid");
@@ -130,7 +131,8 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
     }
 }
 
-/// The share of the wall time that is not the episode loop, over 1000 episodes under all three controllers and on all cores.
+/// The share of the wall time that is not the episode loop, over 1000 episodes under all three controllers and on all
+/// cores.
 fn outside_the_loop(campaign: &Campaign) {
     let mut campaign = campaign.clone();
     campaign.episodes = 1000;

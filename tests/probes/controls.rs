@@ -1,5 +1,5 @@
-//! Negative controls: a probe that cannot fail shows nothing. One change of the shaders at a time, and the probe that must
-//! notice it.
+//! Negative controls: a probe that cannot fail shows nothing. One change of the shaders at a time, and the probe that
+//! must notice it.
 
 use super::changes::OF_SIGNALS;
 use super::harness::Lab;

@@ -374,7 +374,8 @@ pub(super) fn advanced<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
         }
         group.advance(&world.setting(&table), until);
         for agent in &mut group.agents {
-            // Until the first fault, how the error stood before it is not final: who holds when tells what is remembered.
+            // Until the first fault, how the error stood before it is not final: who holds when tells what is
+            // remembered.
             if agent.first_fault.value >= until as f32 {
                 for metrics in &mut agent.metrics {
                     metrics.outside_before_fault.error = f64::INFINITY;

@@ -1,5 +1,5 @@
-//! Running a probe: the joined shaders of a shape, [`PRELUDE`] and the body that calls the function; inputs up, results down,
-//! and the comparison with what the Rust twin makes of the same inputs.
+//! Running a probe: the joined shaders of a shape, [`PRELUDE`] and the body that calls the function; inputs up, results
+//! down, and the comparison with what the Rust twin makes of the same inputs.
 
 use super::tracked::Tracked;
 use crate::backend::gpu::device::Use;
@@ -14,8 +14,8 @@ const PRELUDE: &str = include_str!("probe.wgsl");
 /// What results hold before a probe: a NaN, so that what is not written cannot pass for a number.
 pub(super) const BLANK: u32 = 0x7fc0_0000;
 
-/// An allowed error, relative to a number or to one, that would hide mistakes. Bounds are that wide where a branch is taken
-/// by a hair and where a divergence is played.
+/// An allowed error, relative to a number or to one, that would hide mistakes. Bounds are that wide where a branch is
+/// taken by a hair and where a divergence is played.
 const LOOSE: f64 = 1e-4;
 
 /// A device, and a change of the shaders that probes must notice, if any.
@@ -57,8 +57,8 @@ pub(super) struct Left {
 }
 
 impl Lab {
-    /// The unchanged shaders on whatever adapter there is, hardware before software; none where there is none and none is
-    /// required.
+    /// The unchanged shaders on whatever adapter there is, hardware before software; none where there is none and none
+    /// is required.
     pub(super) fn open() -> Option<Self> {
         static GPU: OnceLock<Result<Mutex<Gpu>, GpuError>> = OnceLock::new();
         let opened = GPU.get_or_init(|| match adapters().first() {
@@ -137,8 +137,8 @@ impl Lab {
             .collect()
     }
 
-    /// Runs the entry point `probe` of a text with these contents of the bindings; what it leaves in the two that it may
-    /// write: state and output.
+    /// Runs the entry point `probe` of a text with these contents of the bindings; what it leaves in the two that it
+    /// may write: state and output.
     pub(super) fn dispatch(
         &self,
         text: &str,

@@ -1,5 +1,5 @@
-//! The image of an agent's channel: its state as words, in the order in which probe.wgsl loads and leaves it, and as it is
-//! kept between spans.
+//! The image of an agent's channel: its state as words, in the order in which probe.wgsl loads and leaves it, and as it
+//! is kept between spans.
 
 use super::harness::Expected;
 use super::tracked::Tracked;
@@ -101,8 +101,8 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words
 }
 
-/// The words of an agent's channel in the state buffer, in the order of `Layout::named`, and of each whether it is there all the
-/// time, and not only between two spans.
+/// The words of an agent's channel in the state buffer, in the order of `Layout::named`, and of each whether it is
+/// there all the time, and not only between two spans.
 pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
     agent: &Agent<Tracked, NC, NS, NX>,
     c: usize,

@@ -37,8 +37,8 @@ pub(super) fn counting(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n") + COUNTER
 }
 
-/// What every invocation of a dispatch counts, for spans of several lengths, and when it shows itself. What is drawn is zero:
-/// no loop asks for it.
+/// What every invocation of a dispatch counts, for spans of several lengths, and when it shows itself. What is drawn is
+/// zero: no loop asks for it.
 pub(super) fn counted<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(
     lab: &Lab,
     world: &World<P, NC, NS, NX>,

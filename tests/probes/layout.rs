@@ -1,5 +1,5 @@
-//! Without a device: the joined text of every shape is valid WGSL, and its structs, bindings, workgroups and constants are
-//! those of Rust.
+//! Without a device: the joined text of every shape is valid WGSL, and its structs, bindings, workgroups and constants
+//! are those of Rust.
 
 use super::shapes;
 use super::world::World;

@@ -149,7 +149,8 @@ fn relative_error(found: &[f64], expected: &[f64; 6]) -> f64 {
     differences.fold(0.0, |most: f64, d| if d <= most { most } else { d }) / size
 }
 
-/// Largest error of the shader over reference and random states of a leg; `any` compiles it for axes that point anywhere.
+/// Largest error of the shader over reference and random states of a leg; `any` compiles it for axes that point
+/// anywhere.
 fn largest_error(lab: &Lab, name: &str, leg: usize, any: bool, edit: fn(String) -> String) -> f64 {
     let (exact, single) = models(name, leg);
     let mut constants = single.shader_constants();

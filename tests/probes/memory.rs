@@ -1,5 +1,5 @@
-//! Probes of shaders/window.wgsl, delay_line.wgsl and noise.wgsl: when faults are there, what is remembered, and what is random in
-//! every step.
+//! Probes of shaders/window.wgsl, delay_line.wgsl and noise.wgsl: when faults are there, what is remembered, and what
+//! is random in every step.
 
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};

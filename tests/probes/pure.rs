@@ -1,5 +1,5 @@
-//! Probes of the functions that see nothing but their arguments: shaders/lanes.wgsl, math.wgsl, philox.wgsl, and those of this
-//! kind in plant_uav.wgsl.
+//! Probes of the functions that see nothing but their arguments: shaders/lanes.wgsl, math.wgsl, philox.wgsl, and those
+//! of this kind in plant_uav.wgsl.
 
 use super::harness::{Case, Compared, Expected, Job, Lab};
 use super::numbers::Numbers;

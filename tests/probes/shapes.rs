@@ -12,8 +12,8 @@ use crate::model::plant::biped::LegPlant;
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
 
-/// How many items each list has, in the order of [`LISTS`], how many turbulences there are, and vortices where channels are those
-/// of a place.
+/// How many items each list has, in the order of [`LISTS`], how many turbulences there are, and vortices where channels
+/// are those of a place.
 type Counts = ([usize; LISTS.len()], usize, usize);
 
 /// No signal.
@@ -134,8 +134,8 @@ pub(super) fn plain() -> Shape {
     }
 }
 
-/// The shapes whose functions are probed: each plant for one agent and for a coupled team, each controller, without and with
-/// signals.
+/// The shapes whose functions are probed: each plant for one agent and for a coupled team, each controller, without and
+/// with signals.
 pub(super) fn probed() -> [Shape; 9] {
     [
         shape(PlantKind::Axis, 1, true, false, ALL),
@@ -150,8 +150,8 @@ pub(super) fn probed() -> [Shape; 9] {
     ]
 }
 
-/// The same with what a campaign may choose differently: a sampled controller, integrals of what is measured, and a coupling
-/// around the centroid.
+/// The same with what a campaign may choose differently: a sampled controller, integrals of what is measured, and a
+/// coupling around the centroid.
 fn sampled(shape: Shape) -> Shape {
     Shape {
         coupling: Coupling::Centroid,
@@ -164,7 +164,8 @@ fn sampled(shape: Shape) -> Shape {
     }
 }
 
-/// The shapes whose text is validated: every plant, controller and team size, each kind of signal on its own, all and none.
+/// The shapes whose text is validated: every plant, controller and team size, each kind of signal on its own, all and
+/// none.
 pub(super) fn validated() -> Vec<Shape> {
     let (turbulent, blown) = ((NONE.0, 1, 0), (NONE.0, 0, 1));
     let counts = (0..LISTS.len())
@@ -215,8 +216,8 @@ pub(super) fn thrust() -> Thrust<f32> {
     Thrust::new(&uav())
 }
 
-/// A right leg with damped joints, whose limits are met by some of the random states. Its rotors are heavy, so that no joint
-/// moves far more than the others, in which rounding errors would drown it.
+/// A right leg with damped joints, whose limits are met by some of the random states. Its rotors are heavy, so that no
+/// joint moves far more than the others, in which rounding errors would drown it.
 pub(super) fn leg<const CUT: bool>() -> LegPlant<f32, CUT> {
     let mut robot = robot("g1_12dof");
     for (j, joint) in (0_u8..).zip(&mut robot.legs[1].joints) {

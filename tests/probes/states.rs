@@ -39,8 +39,8 @@ impl Random<'_> {
         self.lists.counts[list.unwrap()]
     }
 
-    /// When something is there: around the scene's step, and in the world's span. A ramp's middle is never met by a hair: the
-    /// numbers of steps are odd.
+    /// When something is there: around the scene's step, and in the world's span. A ramp's middle is never met by a
+    /// hair: the numbers of steps are odd.
     fn switch<L: Lane<Real = f32>>(&mut self, low: f64, high: f64) -> Window<L> {
         let now = f64::from(self.step);
         let onsets = [0.0, now, now + 1.0, 254.0, 256.0, f64::INFINITY];
@@ -167,7 +167,8 @@ impl Random<'_> {
 }
 
 impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<P, NC, NS, NX> {
-    /// What an agent meets: signals of every kind that the shape has, switching around the scene's step and in its span.
+    /// What an agent meets: signals of every kind that the shape has, switching around the scene's step and in its
+    /// span.
     pub(super) fn condition<L: Lane<Real = f32>>(
         &self,
         scene: usize,

@@ -1,11 +1,11 @@
-//! A lane that knows how far a shader may be off: the value of the lane type f32, and beside it a bound on the distance to
-//! what any implementation of WGSL may compute from the same inputs (running error analysis; Higham, Accuracy and Stability of
-//! Numerical Algorithms, section 3.3).
+//! A lane that knows how far a shader may be off: the value of the lane type f32, and beside it a bound on the distance
+//! to what any implementation of WGSL may compute from the same inputs (running error analysis; Higham, Accuracy and
+//! Stability of Numerical Algorithms, section 3.3).
 //!
 //! The model is generic over lanes, so every twin runs on this one, and no tolerance is set by hand. What is assumed of
-//! WGSL, section 15.7.4 "Floating point accuracy", is: sums, products and `fma` correctly rounded, which may be up or down, the
-//! latter fused or not; quotients within 2.5 ulp; square roots within the 4.5 ulp of 1 / inverseSqrt; small numbers flushed
-//! to zero.
+//! WGSL, section 15.7.4 "Floating point accuracy", is: sums, products and `fma` correctly rounded, which may be up or
+//! down, the latter fused or not; quotients within 2.5 ulp; square roots within the 4.5 ulp of 1 / inverseSqrt; small
+//! numbers flushed to zero.
 //!
 //! Operations are calls and not copies: every twin of every shape is compiled for this lane.
 
@@ -28,12 +28,12 @@ const DIVIDED: f64 = 3.5;
 const ROOTED: f64 = 5.5;
 /// Error of sine and cosine, ulp of one: their polynomials are sums of a few terms below two.
 const SINE: f64 = 6.0;
-/// Error of reducing an angle by multiples of pi, ulp of the angle. A compiler that reassociates adds up the two parts of pi
-/// and loses the second, as a software Vulkan was seen to do: a quarter of an ulp.
+/// Error of reducing an angle by multiples of pi, ulp of the angle. A compiler that reassociates adds up the two parts
+/// of pi and loses the second, as a software Vulkan was seen to do: a quarter of an ulp.
 const REDUCED: f64 = 2.0;
 
-/// Where the error of a stored single is: in bits of the double that no single has, and too low to round it to another. What
-/// is stored is read again, as by a ring of samples.
+/// Where the error of a stored single is: in bits of the double that no single has, and too low to round it to another.
+/// What is stored is read again, as by a ring of samples.
 const LOW_BITS: u64 = (1 << 28) - 1;
 /// What tells these bits from those of a double that was never a single.
 const MARK: u64 = 0xa5c3;

@@ -1,5 +1,5 @@
-//! Which function is whose twin. Without a device: every function of the shaders has a probe, and every function of the model
-//! files that they mirror has a twin or a reason to have none.
+//! Which function is whose twin. Without a device: every function of the shaders has a probe, and every function of the
+//! model files that they mirror has a twin or a reason to have none.
 
 use super::table::probes;
 use super::{layout, shapes};

@@ -1,5 +1,5 @@
-//! Teams of agents in random states: what probes of functions on private, workgroup and buffer state start from, on both
-//! sides of the border.
+//! Teams of agents in random states: what probes of functions on private, workgroup and buffer state start from, on
+//! both sides of the border.
 
 use super::harness::{Case, Compared, Expected, Job, Lab, Left};
 use super::image::{FAILED, image, image_words, stored};
@@ -205,8 +205,8 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         group
     }
 
-    /// Runs a probe and compares all that it leaves with its twin: `asked` and `answers` are the numbers of the function's
-    /// inputs and results, `inputs` makes the former, `twin` does to a scene what the body does.
+    /// Runs a probe and compares all that it leaves with its twin: `asked` and `answers` are the numbers of the
+    /// function's inputs and results, `inputs` makes the former, `twin` does to a scene what the body does.
     pub(super) fn check(
         &self,
         lab: &Lab,

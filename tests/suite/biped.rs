@@ -15,8 +15,8 @@ mod limits;
 use crate::common::altered;
 use urts_mc::campaign::Campaign;
 
-/// Three robots that meet everything at once: coupling, the ground, sines, faults of sensors and actuators, a true mass of
-/// their own, and initial errors that torques at their limits must correct.
+/// Three robots that meet everything at once: coupling, the ground, sines, faults of sensors and actuators, a true mass
+/// of their own, and initial errors that torques at their limits must correct.
 fn everything(actuation: &str) -> Campaign {
     let more = r#"[coupling]
 kappa = { uniform = [0.5, 1.0] }

@@ -166,8 +166,8 @@ fn designs_leave_alone_what_they_do_not_concern() {
     assert_eq!(longer, first(&sampled("sobol", 4, 32)));
 }
 
-/// Scores of eight replicates of eight episodes: in replicate r the first controller fails r times, and the errors of the second
-/// are e^r times as large.
+/// Scores of eight replicates of eight episodes: in replicate r the first controller fails r times, and the errors of
+/// the second are e^r times as large.
 fn scores(campaign: &Campaign) -> Scores {
     let values = campaign.team * campaign.channels().len();
     let controllers = campaign.controllers.len();
@@ -205,7 +205,8 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         let campaign = sampled(design, 8, 64);
         let scores = scores(&campaign);
         let (summary, comparisons) = (summarise(&campaign, &scores), compare(&campaign, &scores));
-        // Rates 0/8 to 7/8: mean 3.5/8, standard error sqrt(6/8)/8; Student's t of 7 degrees of freedom at 95 % is 2.364624.
+        // Rates 0/8 to 7/8: mean 3.5/8, standard error sqrt(6/8)/8; Student's t of 7 degrees of freedom at 95 % is
+        // 2.364624.
         let rate = &summary[0].failures;
         let t = rate.replicates.unwrap();
         let half_width = 2.364_624 * 0.75_f64.sqrt() / 8.0;

@@ -1,5 +1,5 @@
-//! The same file, seed and precision give the same bytes, whatever the threads, the width, the order and the length; and one
-//! episode alone gives its row again.
+//! The same file, seed and precision give the same bytes, whatever the threads, the width, the order and the length;
+//! and one episode alone gives its row again.
 
 use crate::common::{altered, campaign, gains};
 use std::fs;
@@ -11,8 +11,8 @@ use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
 use urts_mc::simulation::RunOptions;
 
-/// Campaigns of UAVs and of robots with noise and every other kind of signal, short, and with a number of episodes that fills no
-/// block.
+/// Campaigns of UAVs and of robots with noise and every other kind of signal, short, and with a number of episodes that
+/// fills no block.
 fn everything() -> [Campaign; 2] {
     [uavs(), robots()]
 }

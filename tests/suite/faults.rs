@@ -75,8 +75,8 @@ fn of_x(more: &str) -> Vec<ChannelSample> {
     flown.into_iter().map(|agents| agents[0][X]).collect()
 }
 
-/// The command that a channel of translation wanted: m e'' = u + F - K v - m r'' and u_wanted = m (r'' + told) + K r', where no
-/// force F acts.
+/// The command that a channel of translation wanted: m e'' = u + F - K v - m r'' and u_wanted = m (r'' + told) + K r',
+/// where no force F acts.
 fn wanted(shown: &ChannelSample) -> f64 {
     shown.u - DRAG_N_S_M * shown.e_rate - MASS_KG * shown.f1
 }

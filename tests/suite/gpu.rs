@@ -119,7 +119,8 @@ duration_s = 0.2
 rate = { uniform = [200.0, 600.0] }
 ";
 
-/// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are not.
+/// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are
+/// not.
 fn mixed_biped(changes: &[&str]) -> Campaign {
     let mut campaign = gpu_campaign("mixed_biped", changes);
     if let Agent::Biped(biped) = &mut campaign.agent {
@@ -185,7 +186,8 @@ const BRIEF: [&str; 5] = [
     "fault.6.onset_s.uniform=[0.5, 1.1]",
 ];
 
-/// Changes of [`mixed`]: the same signals on all channels, so that the axes share their shaders; these take long to compile.
+/// Changes of [`mixed`]: the same signals on all channels, so that the axes share their shaders; these take long to
+/// compile.
 const ALIKE: [&str; 3] = [
     "fault.1.channels=all",
     "fault.2.channels=all",

@@ -1,5 +1,5 @@
-//! The layout of the sources: rooms in the order of `lib.rs`, arrows downwards only, no circles, files and functions of a size
-//! that can be read at once. What breaks a rule is named with its place.
+//! The layout of the sources: rooms in the order of `lib.rs`, arrows downwards only, no circles, files and functions of
+//! a size that can be read at once. What breaks a rule is named with its place.
 
 mod graph;
 

@@ -33,7 +33,8 @@
 //! | `report` | what the report of a run says, and what a browser makes of it |
 //! | `cli` | commands, exit codes and error messages |
 //!
-//! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with ourselves.
+//! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with
+//! ourselves.
 #![expect(clippy::unwrap_used, reason = "a test may stop where it stands")]
 #![expect(
     clippy::float_cmp,

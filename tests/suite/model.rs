@@ -124,8 +124,8 @@ fn the_observer_is_told_of_the_limits() {
         .iter()
         .flat_map(|s| s.agents[0][3..].iter().map(|c| c.f1.abs()))
         .fold(0.0, f64::max);
-    // What is left of f1 is the gyroscopic and damping difference of (14), a few hundredths; a limit unknown to the observer
-    // would show as several rad/s^2.
+    // What is left of f1 is the gyroscopic and damping difference of (14), a few hundredths; a limit unknown to the
+    // observer would show as several rad/s^2.
     assert!(largest < 0.5, "f1 reaches {largest}");
 }
 

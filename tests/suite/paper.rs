@@ -27,8 +27,9 @@ fn measured(claims: &[Claim], place: &str, word: &str) -> Vec<f64> {
 fn val_the_claims_have_the_numbers_of_an_independent_program_and_the_shipped_figures_are_these() {
     let place = TempDir::new().unwrap();
     let claims = paper(&OutputDir::existing(place.path())).unwrap();
-    // An independent program found on scenario A: f1 estimated to 2.4 %, f2 overshooting by 31 % and back within 10 % after
-    // 0.66 s, 0.011 m at 3 rad/s under the FTC. It averaged over channels or sampled otherwise, so to within a tenth.
+    // An independent program found on scenario A: f1 estimated to 2.4 %, f2 overshooting by 31 % and back within 10 %
+    // after 0.66 s, 0.011 m at 3 rad/s under the FTC. It averaged over channels or sampled otherwise, so to within a
+    // tenth.
     let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.1;
     let f1 = measured(&claims, "Fig. 12", "f1");
     assert!(f1.iter().any(|found| near(*found, 2.4)), "{f1:?}");

@@ -34,7 +34,8 @@ fn sure<'a>(
 fn what_drives_the_error_is_found_and_what_does_not_is_not() {
     let (campaign, scores) = flown("uav-paper", 192);
     let ranking = rank(&campaign, &scores);
-    // The sensor fault's amplitude drives the FTC and the plain PID, the disturbance the PID that distrusts that sensor.
+    // The sensor fault's amplitude drives the FTC and the plain PID, the disturbance the PID that distrusts that
+    // sensor.
     for (controller, condition) in [
         ("ftc", "fault1_amplitude"),
         ("pid", "fault1_amplitude"),

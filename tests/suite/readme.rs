@@ -77,7 +77,8 @@ fn every_command_of_the_readme_works() {
         } else if let Some(file) = command.strip_prefix("cat ") {
             assert!(place.path().join(file).is_file(), "{command}");
         } else if command.starts_with("apt-get install") {
-            // What a machine with a GPU needs is installed by those who have one; the package is that of the tests' Vulkan.
+            // What a machine with a GPU needs is installed by those who have one; the package is that of the tests'
+            // Vulkan.
             let package = command.split_whitespace().last().unwrap();
             let tests = fs::read_to_string(repository("tests/run")).unwrap();
             assert!(tests.contains(package), "{command}");

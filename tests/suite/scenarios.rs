@@ -1,5 +1,5 @@
-//! The closed loop against trajectories that an independent program integrated (tests/golden/scenarios.json says where they
-//! are from): scenario A fully actuated, scenario B with thrust, filter and actuator faults.
+//! The closed loop against trajectories that an independent program integrated (tests/golden/scenarios.json says where
+//! they are from): scenario A fully actuated, scenario B with thrust, filter and actuator faults.
 
 use crate::common::{altered, gains, golden};
 use serde_json::Value;

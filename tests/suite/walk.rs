@@ -24,7 +24,8 @@ fn walk(waypoints: &[[f64; 2]]) -> Walk {
     Walk::plan(&g1(), waypoints, &Gait::G1).unwrap()
 }
 
-/// `points` + 1 waypoints on an arc of 90 degrees to the left (or right: `side` -1), `length_m` long, from the origin along x.
+/// `points` + 1 waypoints on an arc of 90 degrees to the left (or right: `side` -1), `length_m` long, from the origin
+/// along x.
 fn quarter_turn(length_m: f64, side: f64, points: u32) -> Vec<[f64; 2]> {
     let radius = length_m / std::f64::consts::FRAC_PI_2;
     let angles =
@@ -34,7 +35,8 @@ fn quarter_turn(length_m: f64, side: f64, points: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Least distance of the zero moment point inside the support polygon over all samples, m: of the pendulum and of all links.
+/// Least distance of the zero moment point inside the support polygon over all samples, m: of the pendulum and of all
+/// links.
 fn margins(robot: &Robot, walk: &Walk) -> [f64; 2] {
     let soles = zmp::soles(robot);
     let samples = walk.times_s().zip(&walk.com.zmp_m);

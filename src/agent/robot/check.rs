@@ -254,7 +254,7 @@ impl Check<'_> {
         ))
     }
 
-    /// Refuses a foot with numbers that are none.
+    /// Rejects a foot with NaN or infinite values.
     pub(super) fn foot(&self, key: &str, foot: &Foot) -> Result<(), RobotError> {
         self.finite(key, &foot.ankle_offset_m.as_slice())?;
         self.finite(key, &foot.sole.translation.vector.as_slice())?;

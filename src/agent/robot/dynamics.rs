@@ -1,8 +1,9 @@
 //! Dynamics (4) of one leg on a fixed pelvis, M(q) q'' + H(q, q') = tau, in f64.
 //!
-//! The algorithms are those of R. Featherstone, Rigid Body Dynamics Algorithms, Springer 2008: the recursive Newton-Euler
-//! algorithm (section 5.3) and the composite-rigid-body algorithm (section 6.2), with all vectors in the pelvis frame and each
-//! body's motion taken at the origin of its link. The rotor of each joint adds its armature to the diagonal of M.
+//! The algorithms are those of R. Featherstone, Rigid Body Dynamics Algorithms, Springer 2008: the recursive
+//! Newton-Euler algorithm (section 5.3) and the composite-rigid-body algorithm (section 6.2), with all vectors in the
+//! pelvis frame and each body's motion taken at the origin of its link. The rotor of each joint adds its armature to
+//! the diagonal of M.
 
 use super::kinematics::{LegPose, leg_pose};
 use super::structure::{LEG_JOINTS, Leg};

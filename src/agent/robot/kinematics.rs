@@ -81,8 +81,8 @@ impl LegPose<'_> {
         self.link(LEG_JOINTS - 1) * self.leg.foot.sole
     }
 
-    /// Geometric Jacobian of the ankle frame: velocity of its origin (rows 0..3) and angular velocity (rows 3..6) over the
-    /// joint rates.
+    /// Geometric Jacobian of the ankle frame: velocity of its origin (rows 0..3) and angular velocity (rows 3..6) over
+    /// the joint rates.
     #[must_use]
     pub fn jacobian(&self) -> Matrix6<f64> {
         let ankle = self.ankle_m();

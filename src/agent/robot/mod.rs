@@ -1,12 +1,13 @@
-//! The biped: two legs of six revolute joints each on a pelvis (paper, section II-B; the upper body is part of the pelvis).
+//! The biped: two legs of six revolute joints each on a pelvis (paper, section II-B; the upper body is part of the
+//! pelvis).
 //!
 //! ```text
 //! table (.toml) | urdf (.urdf) -> Robot -> kinematics -> dynamics -> wrench
 //! ```
 //!
-//! A [`Robot`] is made only by its readers, which refuse what is no robot; nothing after them checks it again. Frames follow
-//! URDF: a link's frame is its joint's frame, and the pelvis frame has x forward, y to the left and z up. Joint vectors hold
-//! the left leg in 0..6 and the right leg in 6..12, each from the hip to the ankle.
+//! A [`Robot`] is made only by its readers, which refuse what is no robot; nothing after them checks it again. Frames
+//! follow URDF: a link's frame is its joint's frame, and the pelvis frame has x forward, y to the left and z up. Joint
+//! vectors hold the left leg in 0..6 and the right leg in 6..12, each from the hip to the ankle.
 
 mod check;
 pub mod dynamics;

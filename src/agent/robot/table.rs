@@ -1,4 +1,5 @@
-//! The joint table: a robot as a TOML file of plain numbers, one `[[joint]]` per joint and its link (campaigns/robots/*.toml).
+//! The joint table: a robot as a TOML file of plain numbers, one `[[joint]]` per joint and its link
+//! (campaigns/robots/*.toml).
 
 use super::check::{Check, Names, Place, RawJoint, tensor};
 use super::error::RobotError;

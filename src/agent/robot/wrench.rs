@@ -1,8 +1,8 @@
-//! What the ground has to do to a robot that moves: the whole-body wrench, its zero moment point, and the torques that the
-//! ground reaction causes in the joints (the optional disturbance of the paper's (4)).
+//! What the ground has to do to a robot that moves: the whole-body wrench, its zero moment point, and the torques that
+//! the ground reaction causes in the joints (the optional disturbance of the paper's (4)).
 //!
-//! The pelvis is upright and turns about the vertical only, as in the walking reference (section III-B). The world frame has
-//! z up and the ground at z = 0. Rotors add to the joints' torques, not to this wrench.
+//! The pelvis is upright and turns about the vertical only, as in the walking reference (section III-B). The world
+//! frame has z up and the ground at z = 0. Rotors add to the joints' torques, not to this wrench.
 
 use super::dynamics::{BaseMotion, carried, newton_euler};
 use super::kinematics::{by_leg, joined, leg_pose};
@@ -57,8 +57,8 @@ impl Wrench {
         }
     }
 
-    /// The point of the ground about which the wrench has no horizontal moment (the multibody ZMP), m; not finite if the
-    /// wrench has no vertical force.
+    /// The point of the ground about which the wrench has no horizontal moment (the multibody ZMP), m; not finite if
+    /// the wrench has no vertical force.
     #[must_use]
     pub fn zmp_m(&self) -> Vector3<f64> {
         let Wrench {
@@ -70,7 +70,8 @@ impl Wrench {
     }
 }
 
-/// The wrench that the ground has to exert on the robot for this motion: rate of momentum less gravity, about the pelvis.
+/// The wrench that the ground has to exert on the robot for this motion: rate of momentum less gravity, about the
+/// pelvis.
 #[must_use]
 pub fn whole_body_wrench(robot: &Robot, pelvis: &PelvisMotion, joints: &JointMotion) -> Wrench {
     let world_from_pelvis = heading(pelvis.yaw_rad);
@@ -121,16 +122,16 @@ pub fn ankles_m(robot: &Robot, pelvis: &PelvisMotion, q_rad: &[f64; JOINTS]) -> 
     })
 }
 
-/// The left foot's share of the ground reaction in double support: where the ZMP lies on the way from the right ankle to the
-/// left, 0 to 1.
+/// The left foot's share of the ground reaction in double support: where the ZMP lies on the way from the right ankle
+/// to the left, 0 to 1.
 #[must_use]
 pub fn left_share(zmp_m: &Vector3<f64>, [left, right]: &[Vector3<f64>; 2]) -> f64 {
     let (across, along) = ((left - right).xy(), (zmp_m - right).xy());
     (along.dot(&across) / across.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// Torque J'f of the ground reaction in the joints, N m: `wrench` acts at its ZMP, `left_share` of it on the left foot (1 or 0
-/// in single support) and the rest on the right one.
+/// Torque J'f of the ground reaction in the joints, N m: `wrench` acts at its ZMP, `left_share` of it on the left foot
+/// (1 or 0 in single support) and the rest on the right one.
 #[must_use]
 pub fn ground_reaction(
     robot: &Robot,

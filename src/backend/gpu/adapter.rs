@@ -3,8 +3,8 @@
 use super::GpuError;
 use serde::{Deserialize, Serialize};
 
-/// Share of the device's free memory that a run may take, percent: an allocation beyond is refused, which is better than a
-/// driver that swaps or fails later.
+/// Share of the device's free memory that a run may take, percent: an allocation beyond is refused, which is better
+/// than a driver that swaps or fails later.
 pub(super) const MEMORY_PERCENT: u8 = 80;
 
 /// What kind of device an adapter is.

@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// What a dispatch should take: short beside the seconds after which a display driver resets the device, long beside the
-/// cost of a submission.
+/// What a dispatch should take: short beside the seconds after which a display driver resets the device, long beside
+/// the cost of a submission.
 const DISPATCH: Duration = Duration::from_millis(100);
 /// Steps of the first dispatch, before anything is known of the device.
 const FIRST_STEPS: u32 = 4;
@@ -44,8 +44,8 @@ pub struct GpuSimulator<'g> {
 }
 
 impl<'g> GpuSimulator<'g> {
-    /// Prepares a campaign: tabulates the references, rounds the gains, compiles the shaders, allocates the buffers; `gains`
-    /// as for [`crate::backend::cpu::Cpu::new`].
+    /// Prepares a campaign: tabulates the references, rounds the gains, compiles the shaders, allocates the buffers;
+    /// `gains` as for [`crate::backend::cpu::Cpu::new`].
     ///
     /// # Errors
     /// If the campaign does not fit the adapter, or its driver refuses the shaders.
@@ -147,8 +147,8 @@ impl<'g> GpuSimulator<'g> {
         self.times
     }
 
-    /// Flies a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told how many
-    /// episodes' worth of steps came to an end.
+    /// Flies a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told how
+    /// many episodes' worth of steps came to an end.
     ///
     /// # Errors
     /// If the device fails; nothing of the batch is known then.
@@ -183,8 +183,8 @@ impl<'g> GpuSimulator<'g> {
         Ok(flown)
     }
 
-    /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended, `[episode]`.
-    /// The episodes may be any of the campaign's, as many as a batch holds.
+    /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended,
+    /// `[episode]`. The episodes may be any of the campaign's, as many as a batch holds.
     ///
     /// # Errors
     /// If the device fails.
@@ -334,7 +334,8 @@ impl<'g> GpuSimulator<'g> {
         self.steps = wanted;
     }
 
-    /// Integrates over some steps, in as many dispatches as it takes; `reached` is told after each where the state stands.
+    /// Integrates over some steps, in as many dispatches as it takes; `reached` is told after each where the state
+    /// stands.
     fn advance(
         &mut self,
         episodes: usize,

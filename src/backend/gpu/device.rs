@@ -6,11 +6,12 @@ use super::adapter::{Adapter, MEMORY_PERCENT, Wanted};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How long a submission may take. Spans are fractions of a second; a driver that hangs resets the device long before this.
+/// How long a submission may take. Spans are fractions of a second; a driver that hangs resets the device long before
+/// this.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Words that are on their way to the device at once: what waits for the next submission lies in memory that the device can
-/// map, which is small on some cards.
+/// Words that are on their way to the device at once: what waits for the next submission lies in memory that the device
+/// can map, which is small on some cards.
 const UPLOAD: usize = 4 << 20;
 
 /// An open device.
@@ -74,7 +75,8 @@ impl Gpu {
             let message = format!("{reason:?}: {message}");
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
         });
-        // All work is done in scopes; what comes outside of them, when buffers are dropped on a lost device, would panic.
+        // All work is done in scopes; what comes outside of them, when buffers are dropped on a lost device, would
+        // panic.
         device.on_uncaptured_error(Arc::new(|_| ()));
         Ok(Self {
             adapter,
@@ -113,8 +115,8 @@ impl Gpu {
         ]
         .map(|filter| self.device.push_error_scope(filter));
         let done = work();
-        // Scopes are popped in the reverse order. A buffer for which there is no memory is invalid wherever it is bound, so
-        // that lack of memory, which is popped first, is the cause of what else went wrong.
+        // Scopes are popped in the reverse order. A buffer for which there is no memory is invalid wherever it is
+        // bound, so that lack of memory, which is popped first, is the cause of what else went wrong.
         let mut error = None;
         for scope in scopes.into_iter().rev() {
             let popped = pollster::block_on(scope.pop());

@@ -1,9 +1,10 @@
-//! How many steps a dispatch may take: a bound on the iterations of all loops that one invocation goes through, stated for
-//! every adapter.
+//! How many steps a dispatch may take: a bound on the iterations of all loops that one invocation goes through, stated
+//! for every adapter.
 //!
-//! A loop counts once for each look at its condition, the last one included. Every loop of `shaders/` counts, though a compiler
-//! unrolls some of them: which ones depends on the driver's estimate of their cost. A loop that a campaign may leave out counts
-//! where it is there. `tests/probes/iterations.rs` counts on the device and holds these numbers against it.
+//! A loop counts once for each look at its condition, the last one included. Every loop of `shaders/` counts, though a
+//! compiler unrolls some of them: which ones depends on the driver's estimate of their cost. A loop that a campaign may
+//! leave out counts where it is there. `tests/probes/iterations.rs` counts on the device and holds these numbers
+//! against it.
 
 use super::GpuError;
 use super::adapter::AdapterKind;
@@ -16,15 +17,16 @@ use crate::model::controller::FTC_STATES;
 use crate::random::philox::ROUNDS;
 
 /// Mesa's software drivers (llvmpipe) end all loops of an invocation after 65,535 iterations in all (`lp_bld_limits.h`,
-/// `LP_MAX_TGSI_LOOP_ITERATIONS`). They report nothing: the steps that are left are skipped, and the numbers are wrong. The bound
-/// is a little lower because a driver may add loops of its own, for example to clear workgroup memory. Other software drivers
-/// have no such limit that we know of; the bound costs them nothing, since a dispatch of so many iterations takes much longer
-/// than its submission.
+/// `LP_MAX_TGSI_LOOP_ITERATIONS`). They report nothing: the steps that are left are skipped, and the numbers are wrong.
+/// The bound is a little lower because a driver may add loops of its own, for example to clear workgroup memory. Other
+/// software drivers have no such limit that we know of; the bound costs them nothing, since a dispatch of so many
+/// iterations takes much longer than its submission.
 const SOFTWARE: u64 = 65_000;
 
-/// No hardware driver ends a loop. What counts there is that a dispatch is short beside the seconds after which a display driver
-/// resets the device. The time of the last dispatch sees to that; this bound holds for what is asked for by hand. A step has at
-/// least 50 iterations and takes microseconds, so 20,000 of them take about 0.1 s on a device that is not full.
+/// No hardware driver ends a loop. What counts there is that a dispatch is short beside the seconds after which a
+/// display driver resets the device. The time of the last dispatch sees to that; this bound holds for what is asked for
+/// by hand. A step has at least 50 iterations and takes microseconds, so 20,000 of them take about 0.1 s on a device
+/// that is not full.
 const HARDWARE: u64 = 1 << 20;
 
 /// Lists of waves, each of which has a loop of its own wherever signals are evaluated.
@@ -79,8 +81,8 @@ impl Shape {
 
         // Signals that are evaluated: a loop of each list of waves, and one of the rings of commands.
         let evaluate = waves + WAVE_LISTS + passes(rings);
-        // What is held over a step: a loop of each list, one of turbulences, the sum of the commands that leak, and when it
-        // changes next.
+        // What is held over a step: a loop of each list, one of turbulences, the sum of the commands that leak, and
+        // when it changes next.
         let hold = where_it(lists.leaks(), passes(team))
             + switches
             + LISTS.len() as u64
@@ -99,8 +101,8 @@ impl Shape {
         let step = 1;
         let per_step = step + hold + 2 * evaluate + 4 * stage + remember + end;
 
-        // Every dispatch takes the signals from the draw, holds them, and ends the loop over its steps; `show` has one stage more,
-        // and `start` and `finish` have loops over words.
+        // Every dispatch takes the signals from the draw, holds them, and ends the loop over its steps; `show` has one
+        // stage more, and `start` and `finish` have loops over words.
         let words = passes(SHOWN_WORDS as u64)
             + passes(FTC_STATES as u64)
             + 2 * passes(6)

@@ -19,8 +19,8 @@ pub(crate) const OUTCOME_WORDS: usize = 13;
 pub(crate) const SHOWN_WORDS: usize = 10;
 /// A step that never comes.
 pub(crate) const NEVER: u32 = u32::MAX;
-/// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance, scale of
-/// the ground's reaction.
+/// Words of a draw before its signals: episode, int e, e, e', 1 / inertia, kappa, first fault, constant disturbance,
+/// scale of the ground's reaction.
 const FIXED_WORDS: usize = 9;
 /// Words of a switch: onset, end, 1 / ramp, value.
 const SWITCH_WORDS: usize = 4;
@@ -28,8 +28,8 @@ const SWITCH_WORDS: usize = 4;
 const TURBULENCE_WORDS: usize = 9;
 /// Words of a vortex: force, 1 / radius, 2 / length.
 const VORTEX_WORDS: usize = 3;
-/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held, the commands
-/// that were sent and that arrived last.
+/// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held, the
+/// commands that were sent and that arrived last.
 const MEMORY_WORDS: usize = 6;
 
 /// Where the words of a channel are, in its draw and in its state.
@@ -57,8 +57,8 @@ impl<'l> Layout<'l> {
             + VORTEX_WORDS * self.lists.vortices
     }
 
-    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of noise, states
-    /// of turbulence, memory and rings.
+    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of
+    /// noise, states of turbulence, memory and rings.
     pub(crate) fn stored(self) -> usize {
         self.rings_stored() + self.lists.ring_words()
     }
@@ -188,8 +188,8 @@ fn ring_steps(campaign: &Campaign) -> usize {
     longest_s.map_or(1, |longest_s| campaign.time.whole_steps(longest_s) as usize)
 }
 
-/// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up with
-/// its last episode.
+/// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up
+/// with its last episode.
 pub(crate) fn draws(
     campaign: &Campaign,
     shape: &Shape,
@@ -289,8 +289,8 @@ pub(crate) fn drawn<const NC: usize>(
     words
 }
 
-/// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into the
-/// outcomes of each episode's agents.
+/// Takes the outcome words of a group under one controller, `[block of episodes][word][channel][agent][episode]`, into
+/// the outcomes of each episode's agents.
 ///
 /// # Errors
 /// If the words are not of these episodes: a dispatch was not carried out, or a buffer holds something else.

@@ -4,8 +4,8 @@ use crate::model::exogenous::window::{IntermittentWindow, Window};
 use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::Lane;
 
-/// The lists of what switches, in their order: switches are counted through, so those of bursts, of waves and of rings lie
-/// together.
+/// The lists of what switches, in their order: switches are counted through, so those of bursts, of waves and of rings
+/// lie together.
 pub(crate) const LISTS: [&str; 21] = [
     "LOSSES",
     "HARD_OVERS",
@@ -54,7 +54,8 @@ pub(crate) struct Lists {
     pub(crate) ring_steps: usize,
     /// Steps for which a command is held.
     pub(crate) hold_steps: u32,
-    /// [`ExogenousInputs::is_restless`], [`ExogenousInputs::remembers`], [`ExogenousInputs::carries`], [`ExogenousInputs::distorts`].
+    /// [`ExogenousInputs::is_restless`], [`ExogenousInputs::remembers`], [`ExogenousInputs::carries`],
+    /// [`ExogenousInputs::distorts`].
     pub(crate) restless: bool,
     pub(crate) remembers: bool,
     pub(crate) carries: bool,
@@ -131,7 +132,8 @@ pub(crate) fn waves<L: Lane, const NC: usize>(
 }
 
 impl Lists {
-    /// Those of signals that are listed as [`Entries::Possible`], and of as many vortices; rings keep up to `ring_steps` samples.
+    /// Those of signals that are listed as [`Entries::Possible`], and of as many vortices; rings keep up to
+    /// `ring_steps` samples.
     pub(crate) fn of<L: Lane, const NC: usize>(
         signals: &ExogenousInputs<L, NC>,
         vortices: usize,

@@ -1,4 +1,5 @@
-//! The constants of a group of channels under a controller, as its shaders read them: `Uniforms` in shaders/episode.wgsl.
+//! The constants of a group of channels under a controller, as its shaders read them: `Uniforms` in
+//! shaders/episode.wgsl.
 
 use super::layout::word;
 use crate::agent::{Agent, Biped, HEIGHT};

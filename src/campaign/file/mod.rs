@@ -99,7 +99,8 @@ pub struct AgentFile {
     /// What the command acts through (default "full").
     #[serde(default, deserialize_with = "some_word")]
     pub actuation: Option<ActuationKind>,
-    /// Biped: a joint table (.toml) or a URDF; a relative path starts at the campaign file's folder (default: the Unitree G1).
+    /// Biped: a joint table (.toml) or a URDF; a relative path starts at the campaign file's folder (default: the
+    /// Unitree G1).
     pub robot: Option<String>,
     /// True mass over modelled mass (default 1); a biped's M and H as a whole.
     pub mass_scale: Option<Value>,
@@ -379,7 +380,8 @@ pub struct ControlFile {
     pub integral: Option<IntegralKind>,
     /// Time that a command takes to the actuator, s; whole steps (default: none).
     pub delay_s: Option<Value>,
-    /// Commands per second, each held by the controller until the next; whole steps (default: a command at every instant).
+    /// Commands per second, each held by the controller until the next; whole steps (default: a command at every
+    /// instant).
     pub rate_hz: Option<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! `[[strata]]`, `[sampling]`, `[stop]` and `[[require]]`: which episodes meet what, how their numbers are drawn, when enough
-//! is known, and what has to be.
+//! `[[strata]]`, `[sampling]`, `[stop]` and `[[require]]`: which episodes meet what, how their numbers are drawn, when
+//! enough is known, and what has to be.
 
 use super::value::some_word;
 use schemars::JsonSchema;
@@ -12,7 +12,8 @@ use std::fmt;
 #[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StratumFile {
-    /// Its name in the tables (default: the names of its faults, "none" or "mixed"). "each" has the names of the faults.
+    /// Its name in the tables (default: the names of its faults, "none" or "mixed"). "each" has the names of the
+    /// faults.
     pub name: Option<String>,
     /// The faults of its episodes.
     pub faults: StratumFaultsFile,
@@ -78,8 +79,8 @@ pub struct RequireFile {
 #[serde(untagged)]
 #[schemars(untagged)]
 pub enum StratumFaultsFile {
-    /// "each": one stratum per fault, in which every agent has it (but those whose probability is 0) and no other; "all": every
-    /// fault with its own probability.
+    /// "each": one stratum per fault, in which every agent has it (but those whose probability is 0) and no other;
+    /// "all": every fault with its own probability.
     Word(String),
     /// Names of faults that every agent has (but those whose probability is 0); it has no other. None at all: [].
     Names(Vec<String>),

@@ -60,8 +60,9 @@ pub enum DisturbanceKind {
     Gust1Cosine,
     /// UAV: turbulence at low altitude (MIL-F-8785C) through a drag gain, on x (with the wind), y and z.
     Dryden,
-    /// UAV: the jets that the rotors of the others blow downwards. Who is w below another and rho beside it is pushed down by
-    /// force p(rho / radius) v(2 w / length), where p(s) = 1 / (1 + 0.414 s^2)^2 and v(x) = 27/4 x^2 / (1 + x)^3.
+    /// UAV: the jets that the rotors of the others blow downwards. Who is w below another and rho beside it is pushed
+    /// down by force p(rho / radius) v(2 w / length), where p(s) = 1 / (1 + 0.414 s^2)^2 and v(x) = 27/4 x^2 / (1 +
+    /// x)^3.
     RotorVortex,
     /// Biped: the torques J'f with which the ground answers the walk.
     GroundReaction,
@@ -93,8 +94,8 @@ pub struct FaultFile {
     pub kind: FaultKind,
     /// Probability that an agent has this fault (default 1); 0: never, not in a stratum of this fault either.
     pub probability: Option<f64>,
-    /// Whether it is part of the background, such as measurement noise: it has its probability in every stratum, and none of its
-    /// own (default false).
+    /// Whether it is part of the background, such as measurement noise: it has its probability in every stratum, and
+    /// none of its own (default false).
     pub background: Option<bool>,
     /// The channels that fail (default "all").
     pub channels: Option<ChannelsFile>,
@@ -107,9 +108,9 @@ pub struct FaultFile {
     pub duration_s: Option<Value>,
     /// Time in which it comes, in equal parts, s (default 0: at once).
     pub ramp_s: Option<Value>,
-    /// Loss: lost share of the command; bias, hard-over, false data: N or N m of a command, m/s or rad/s of a measurement (which
-    /// shows the rate too large by it, and a UAV's position by a tenth as many m or rad); scale, mass, inertia: share;
-    /// interference: share of the others' commands.
+    /// Loss: lost share of the command; bias, hard-over, false data: N or N m of a command, m/s or rad/s of a
+    /// measurement (which shows the rate too large by it, and a UAV's position by a tenth as many m or rad); scale,
+    /// mass, inertia: share; interference: share of the others' commands.
     pub magnitude: Option<Value>,
     /// Smoothed square, oscillatory, outlier: amplitude, N or N m of a command, m/s or rad/s of a measurement.
     pub amplitude: Option<Value>,
@@ -276,7 +277,8 @@ pub enum FaultKind {
     Scale,
     /// Sensor: normal noise, held over a step.
     Noise,
-    /// Sensor: shows the last x and x' for ever; what others add to the measurement (f2: bias, noise, outliers, false data) goes on.
+    /// Sensor: shows the last x and x' for ever; what others add to the measurement (f2: bias, noise, outliers, false
+    /// data) goes on.
     Freeze,
     /// Sensor: shows the last x and x' in some slots of time; f2 goes on.
     Dropout,
@@ -286,8 +288,8 @@ pub enum FaultKind {
     SmoothedSquare,
     /// Network: an offset that an attacker adds.
     FalseData,
-    /// Network: in some slots of time nothing arrives, and the last command, or the last x and x' without f2, is held ahead of the
-    /// faults of its receiver.
+    /// Network: in some slots of time nothing arrives, and the last command, or the last x and x' without f2, is held
+    /// ahead of the faults of its receiver.
     DenialOfService,
     /// Network: the commands, or x and x' without f2, recorded before the onset are played again and again.
     Replay,

@@ -98,8 +98,8 @@ pub enum ChannelsFile {
     Word(String),
     /// Channel numbers from 1.
     Numbers(Vec<u32>),
-    /// A list with something else in it, as it was written: no channels, but the names of the agent's are known only where it is
-    /// refused.
+    /// A list with something else in it, as it was written: no channels, but the names of the agent's are known only
+    /// where it is refused.
     #[schemars(skip)]
     Others(Vec<String>),
 }

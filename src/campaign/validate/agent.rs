@@ -80,7 +80,8 @@ impl Check<'_> {
         })
     }
 
-    /// A robot's file that is none, by the key that names it; what is wrong within one is said with the file's own name.
+    /// A robot's file that is none, by the key that names it; what is wrong within one is said with the file's own
+    /// name.
     fn no_robot(&self, name: &str, error: &RobotError) -> CampaignError {
         let (limit, remedy) = match error {
             RobotError::Read { source, .. } => (

@@ -1,5 +1,5 @@
-//! From the file as written to the campaign that runs: every range, shape and contradiction is checked here, and nowhere
-//! later.
+//! From the file as written to the campaign that runs: every range, shape and contradiction is checked here, and
+//! nowhere later.
 
 mod agent;
 mod disturbance;

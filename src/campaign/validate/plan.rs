@@ -133,8 +133,8 @@ impl Check<'_> {
         Ok(strata)
     }
 
-    /// The name and the faults of each stratum that a table stands for. Of the campaign's faults, the second says whether it is
-    /// part of the background.
+    /// The name and the faults of each stratum that a table stands for. Of the campaign's faults, the second says
+    /// whether it is part of the background.
     fn stratum(
         &self,
         table: &str,

@@ -1,9 +1,10 @@
 //! The way of a command from the controller to the plant.
 //!
-//! 1. The controller computes what it wants. A sampled one does so at its ticks, and sends the same from one to the next.
+//! 1. The controller computes what it wants. A sampled one does so at its ticks, and sends the same from one to the
+//!    next.
 //! 2. The link carries what is sent: it delays and replays it, and where it is blocked, what arrived last stays.
-//! 3. The actuator makes of what arrives what acts, anew at every stage: losses, what is added, hard-over; at last, the acting
-//!    command changes from step to step by no more than its rate, and by nothing where it is stuck.
+//! 3. The actuator makes of what arrives what acts, anew at every stage: losses, what is added, hard-over; at last, the
+//!    acting command changes from step to step by no more than its rate, and by nothing where it is stuck.
 //!
 //! So only the limits of rate remember what acted; all else that is held lies before the actuator.
 
@@ -12,7 +13,8 @@ use super::inputs::ExogenousInputs;
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
-    /// Sets what a channel's faults do to its command in step number `step`; `team` is the sum of the team's last commands.
+    /// Sets what a channel's faults do to its command in step number `step`; `team` is the sum of the team's last
+    /// commands.
     #[inline(always)]
     pub(crate) fn hold_command(
         &mut self,
@@ -69,8 +71,8 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         }
     }
 
-    /// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant within a
-    /// step, and stays so however late it arrives: delays are whole steps.
+    /// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant
+    /// within a step, and stays so however late it arrives: delays are whole steps.
     #[inline(always)]
     pub(crate) fn carry_command(&mut self, step: u32, moment: Moment) {
         let (zero, one, half) = (L::number(0.0), L::number(1.0), L::number(0.5));

@@ -1,8 +1,9 @@
-//! What an agent's channels remember of their commands and measurements: whatever freezes, lags, replays or limits the rate.
+//! What an agent's channels remember of their commands and measurements: whatever freezes, lags, replays or limits the
+//! rate.
 //!
-//! One sample per step, taken at its start, is enough: within a step a delayed signal goes on a straight line from sample to
-//! sample, and a command that is limited in its rate may leave the last sample by so much per time. At step 0 there is no past,
-//! so nothing is recalled or frozen yet, and an actuator begins where it is wanted.
+//! One sample per step, taken at its start, is enough: within a step a delayed signal goes on a straight line from
+//! sample to sample, and a command that is limited in its rate may leave the last sample by so much per time. At step 0
+//! there is no past, so nothing is recalled or frozen yet, and an actuator begins where it is wanted.
 
 #![expect(
     clippy::needless_range_loop,
@@ -13,8 +14,8 @@ use super::window::Window;
 use crate::model::lanes::math::clamp;
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
-/// The last samples of `NV` signals of each channel. A delay reads the oldest and puts the newest in its place; a replay stops
-/// recording at its onset, and reads the same samples again and again.
+/// The last samples of `NV` signals of each channel. A delay reads the oldest and puts the newest in its place; a
+/// replay stops recording at its onset, and reads the same samples again and again.
 #[derive(Clone)]
 pub(crate) struct DelayLine<L, const NC: usize, const NV: usize> {
     /// Whether recording goes on while the past is played.

@@ -1,9 +1,9 @@
-//! Dryden's model of turbulence at low altitude (MIL-F-8785C, 3.7.1 to 3.7.3): gust speeds as white noise through rational
-//! filters, whose force is the drag of that speed.
+//! Dryden's model of turbulence at low altitude (MIL-F-8785C, 3.7.1 to 3.7.3): gust speeds as white noise through
+//! rational filters, whose force is the drag of that speed.
 //!
-//! The field of gusts is frozen and swept at the airspeed. Near hovering that picture ends: at a small airspeed the gusts grow
-//! slower without end, so the airspeed must be given, as that of a UAV that stands against the wind. Below 3 m (10 ft) the model is
-//! not defined.
+//! The field of gusts is frozen and swept at the airspeed. Near hovering that picture ends: at a small airspeed the
+//! gusts grow slower without end, so the airspeed must be given, as that of a UAV that stands against the wind. Below 3
+//! m (10 ft) the model is not defined.
 
 use super::noise::Filter;
 use crate::random::philox::Address;
@@ -38,9 +38,9 @@ impl Dryden {
 
     /// The filter along an axis; `gain_n_s_m` is the force per speed.
     ///
-    /// With T = length / airspeed and w white, z1' = (w - z1)/T and z2' = (z1 - z2)/T, scaled so that z1 has the variance 1. Along
-    /// the wind the gust is sigma z1, whose spectrum goes with 1/(1 + (T s)^2); across it, sigma (sqrt 3 z1 + (1 - sqrt 3) z2) /
-    /// sqrt 2, for (1 + sqrt 3 T s)/(1 + T s)^2. Both have the variance sigma^2.
+    /// With T = length / airspeed and w white, z1' = (w - z1)/T and z2' = (z1 - z2)/T, scaled so that z1 has the
+    /// variance 1. Along the wind the gust is sigma z1, whose spectrum goes with 1/(1 + (T s)^2); across it, sigma
+    /// (sqrt 3 z1 + (1 - sqrt 3) z2) / sqrt 2, for (1 + sqrt 3 T s)/(1 + T s)^2. Both have the variance sigma^2.
     pub(crate) fn filter(&self, axis: usize, gain_n_s_m: f64, step_s: f64) -> Filter<f64> {
         let (sigma_m_s, length_m) = self.gusts(axis);
         let share = step_s * self.airspeed_m_s / length_m;
@@ -81,7 +81,8 @@ impl Filter<f64> {
     }
 }
 
-/// z1 and z2 of a filter that has run forever, from the random words of an address: their covariance is [1, 1/2; 1/2, 1/2].
+/// z1 and z2 of a filter that has run forever, from the random words of an address: their covariance is [1, 1/2; 1/2,
+/// 1/2].
 pub(crate) fn at_rest(address: Address, seed: u64) -> [f64; 2] {
     let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;
     let [word, turn, ..] = address.words(seed).map(unit);

@@ -1,5 +1,5 @@
-//! What acts on one agent's channels, as a step goes on: what switches, rises or is drawn is held over each step, and periodic
-//! parts are evaluated at each stage's time.
+//! What acts on one agent's channels, as a step goes on: what switches, rises or is drawn is held over each step, and
+//! periodic parts are evaluated at each stage's time.
 
 #![expect(
     clippy::needless_range_loop,

@@ -19,8 +19,8 @@ pub(crate) struct Oscillation<L: Lane> {
     pub(crate) held: L,
 }
 
-/// Everything that acts on one agent's channels from outside. Each list has an item per campaign entry that strikes these
-/// channels, so what a campaign does not use is not there.
+/// Everything that acts on one agent's channels from outside. Each list has an item per campaign entry that strikes
+/// these channels, so what a campaign does not use is not there.
 #[derive(Clone)]
 pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
     /// Scale of the ground's reaction: the sum of all that the campaign names.
@@ -95,8 +95,8 @@ pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
     /// 1 / true inertia in this step.
     pub(crate) inverse_inertia: [L; NC],
 
-    /// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the one that
-    /// acted, and x and x' as measured.
+    /// At the start of the last step: the command that the controller sent, the one that arrived at the actuator, the
+    /// one that acted, and x and x' as measured.
     pub(crate) last_sent: [L; NC],
     pub(crate) last_arrived: [L; NC],
     pub(crate) last_command: [L; NC],

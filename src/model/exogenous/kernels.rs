@@ -1,5 +1,5 @@
-//! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type and
-//! number of channels, and not into every loop of every plant and controller.
+//! The signals of an agent, and what it feels of the others' jets, as kernels, which are compiled once per lane type
+//! and number of channels, and not into every loop of every plant and controller.
 
 use super::delay_line::Moment;
 use super::inputs::ExogenousInputs;

@@ -31,8 +31,8 @@ pub(crate) struct Turbulence<L, const NC: usize> {
     pub(crate) state: [[L; 2]; NC],
 }
 
-/// A step of the filter: z1 <- keep z1 + n1 and z2 <- keep z2 + cross z1 + n2, with (n1, n2) = noise (two normal numbers);
-/// the force is output z.
+/// A step of the filter: z1 <- keep z1 + n1 and z2 <- keep z2 + cross z1 + n2, with (n1, n2) = noise (two normal
+/// numbers); the force is output z.
 #[derive(Clone, Copy)]
 pub(crate) struct Filter<L> {
     pub(crate) keep: L,

@@ -6,7 +6,8 @@ use super::kernels::distortion;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
-    /// f2 at t = 0, and by how much x and x' are measured too large then: what the observers' first measurement includes.
+    /// f2 at t = 0, and by how much x and x' are measured too large then: what the observers' first measurement
+    /// includes.
     pub(crate) fn at_start(
         mut self,
         [reference, reference_rate]: [[L; NC]; 2],

@@ -6,12 +6,12 @@
 //!
 //! p(s) = 1 / (1 + (sqrt(2) - 1) s^2)^2 and v(x) = 27/4 x^2 / (1 + x)^3.
 //!
-//! p is the profile of a round jet (Schlichting, Boundary-Layer Theory), which has fallen to one half at `radius_m`. v is what
-//! becomes of the jet on its way: it is 1 at its largest, w = `length_m`, and falls like 1 / w further down, as the speed on the
-//! axis of a jet does; above, it rises from zero at equal height with a rate of zero, so the force is continuously
-//! differentiable when agents climb past each other. Jets of several agents add up. This is how strong the effect is and how
-//! far it reaches, not the flow: the jet neither leans, nor follows the thrust, nor tilts whom it hits, and a jet that is still
-//! on its way when its rotors have flown on is not remembered.
+//! p is the profile of a round jet (Schlichting, Boundary-Layer Theory), which has fallen to one half at `radius_m`. v
+//! is what becomes of the jet on its way: it is 1 at its largest, w = `length_m`, and falls like 1 / w further down, as
+//! the speed on the axis of a jet does; above, it rises from zero at equal height with a rate of zero, so the force is
+//! continuously differentiable when agents climb past each other. Jets of several agents add up. This is how strong the
+//! effect is and how far it reaches, not the flow: the jet neither leans, nor follows the thrust, nor tilts whom it
+//! hits, and a jet that is still on its way when its rotors have flown on is not remembered.
 
 use crate::model::lanes::Lane;
 use std::f64::consts::SQRT_2;
@@ -64,7 +64,7 @@ pub(crate) fn vortex_force<L: Lane>(vortices: &[Vortex<L>], own: usize, places: 
     let mut force = L::number(0.0);
     for vortex in vortices {
         let mut sum = L::number(0.0);
-        // One's own share is zero: nobody is below himself.
+        // An agent does not act on itself: its vertical distance is 0.
         for other in places {
             sum = sum + jet_share(vortex, &places[own], other);
         }

@@ -1,5 +1,5 @@
-//! When a fault is there, and how much of it: from its onset on, to its end, rising along its ramp, and some faults only now
-//! and then.
+//! When a fault is there, and how much of it: from its onset on, to its end, rising along its ramp, and some faults
+//! only now and then.
 //!
 //! All this is evaluated at the start of a step and held through its stages, or the method would lose its order.
 

@@ -1,4 +1,5 @@
-//! From the draws of a disturbance to what it does to an agent's channels: the one place that says what each kind means.
+//! From the draws of a disturbance to what it does to an agent's channels: the one place that says what each kind
+//! means.
 
 use super::block::{LaneBlock, Selection};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};

@@ -227,8 +227,8 @@ impl FaultLanes<'_> {
         })
     }
 
-    /// A value that is there in some slots of time: slots of so many seconds, or of one step without; all of them are hit
-    /// where there is no share.
+    /// A value that is there in some slots of time: slots of so many seconds, or of one step without; all of them are
+    /// hit where there is no share.
     fn bursts<L: Lane, const NC: usize>(
         &self,
         value: &dyn Fn(usize) -> [f64; MAX_WIDTH],

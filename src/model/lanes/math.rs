@@ -123,7 +123,8 @@ pub(crate) fn sin_folded<L: Lane>(f: L) -> L {
     polynomial(f * f, &SIN_FOLDED) * f
 }
 
-/// Sine and cosine of an angle, rad: reduction to [-pi/2, pi/2] by the nearest multiple n of pi, whose parity is the sign.
+/// Sine and cosine of an angle, rad: reduction to [-pi/2, pi/2] by the nearest multiple n of pi, whose parity is the
+/// sign.
 #[inline(always)]
 pub(crate) fn sin_cos<L: Lane>(x: L) -> (L, L) {
     let half = L::number(0.5);

@@ -30,8 +30,8 @@ pub struct Turns8(__m256i);
 #[repr(transparent)]
 pub struct Turns16(__m512i);
 
-// SAFETY (all blocks below): a value of these types only exists where `backend::cpu::Simd` found the instruction set, and
-// `dispatch` asserts it again before any kernel runs; loads and stores go through arrays of the right length.
+// SAFETY (all blocks below): a value of these types only exists where `backend::cpu::Simd` found the instruction set,
+// and `dispatch` asserts it again before any kernel runs; loads and stores go through arrays of the right length.
 
 #[inline(always)]
 unsafe fn select_le_8(left: __m256, right: __m256, yes: __m256, no: __m256) -> __m256 {

@@ -1,5 +1,5 @@
-//! The biped of (4), one leg at a time: on a pelvis that stands still the legs never act on each other, and the coupling (11)
-//! works channel by channel.
+//! The biped of (4), one leg at a time: on a pelvis that stands still the legs never act on each other, and the
+//! coupling (11) works channel by channel.
 //!
 //! The table holds three rows of each joint, five where limits cut:
 //!
@@ -91,7 +91,8 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for LegPlant<L::Real, CUT
             excess[c] = demanded - limited;
             wanted[c] = if CUT { limited } else { demanded };
             command[c] = inputs.actuator.command(c, wanted[c]);
-            // The true robot is the modelled one times a number, so a torque divided by that does the same to the model.
+            // The true robot is the modelled one times a number, so a torque divided by that does the same to the
+            // model.
             let force = inputs.ground[c].mul_add(L::splat(rows[2][2]), inputs.force[c]);
             torque[c] = (command[c] + force) * inputs.inverse_inertia[c];
         }

@@ -1,5 +1,5 @@
-//! What the plants share: the loop asks a group of channels for its reference and for its answer to the feedforward law (9)
-//! and whatever acts on it.
+//! What the plants share: the loop asks a group of channels for its reference and for its answer to the feedforward law
+//! (9) and whatever acts on it.
 
 pub(crate) mod biped;
 pub mod leg;

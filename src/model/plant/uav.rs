@@ -1,8 +1,8 @@
 //! The UAV of (3) in groups of channels that act on each other.
 //!
-//! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust along
-//! the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet; rotor vortices depend
-//! on distances, and put the three axes into one group.
+//! Fully actuated, the channels of an axis of translation form a group, and the three of attitude another; with thrust
+//! along the body axis all six hang together. The coupling (10) works channel by channel, so groups never meet; rotor
+//! vortices depend on distances, and put the three axes into one group.
 
 #![expect(
     clippy::needless_range_loop,
@@ -140,8 +140,8 @@ impl<L: Lane> Plant<L, 3, 0> for Translation<L::Real> {
     }
 }
 
-/// Rotational constants: inertias, damping, and (J_k - J_j) / J_i of the gyroscopic torque, which a common scale of the true
-/// inertias leaves alone.
+/// Rotational constants: inertias, damping, and (J_k - J_j) / J_i of the gyroscopic torque, which a common scale of the
+/// true inertias leaves alone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Attitude<R> {
     pub(crate) inertia: [R; 3],
@@ -212,8 +212,8 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
     }
 }
 
-/// The whole UAV with thrust along its body axis, within limits (Remarks 6 and 11). Its own states are those of the command
-/// filter: roll, pitch and their rates.
+/// The whole UAV with thrust along its body axis, within limits (Remarks 6 and 11). Its own states are those of the
+/// command filter: roll, pitch and their rates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Thrust<R> {
     pub(crate) attitude: Attitude<R>,

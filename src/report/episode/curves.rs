@@ -314,7 +314,7 @@ fn caption(scene: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool)
         Quantity::Error | Quantity::State => {}
     }
     if failed {
-        add("The line down marks the time at which the flight of its colour failed.");
+        add("The line down marks the time at which the controller of its colour failed.");
     }
     if cut {
         add("Peaks and curves that run away leave the frame.");

@@ -143,8 +143,8 @@ impl<'a> EpisodeView<'a> {
         kept
     }
 
-    /// Points of an agent's curve that are shown, of which `is_outside` says whether they lie far outside the frame: of a flight
-    /// that diverges, those until it is there after it failed.
+    /// Points of an agent's curve that are shown, of which `is_outside` says whether they lie far outside the frame: of
+    /// a flight that diverges, those until it is there after it failed.
     pub(super) fn shown(
         &self,
         flight: &ControllerTrace<'_>,
@@ -216,8 +216,8 @@ impl<'a> EpisodeView<'a> {
     }
 }
 
-/// Some of the points of a line over time, between which straight lines pass by the others at no more than `within` (the swinging
-/// door).
+/// Some of the points of a line over time, between which straight lines pass by the others at no more than `within`
+/// (the swinging door).
 fn straightened(points: &[(f64, f64)], within: f64) -> Vec<(f64, f64)> {
     let Some((&first, rest)) = points.split_first() else {
         return Vec::new();

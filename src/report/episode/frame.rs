@@ -18,7 +18,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The frame of some values: of all that lie within `room` times the range of those that are no peaks; none without values.
+    /// The frame of some values: of all that lie within `room` times the range of those that are no peaks; none without
+    /// values.
     pub(super) fn of(mut values: Vec<f64>, room: f64) -> Option<Self> {
         values.retain(|value| value.is_finite());
         values.sort_by(f64::total_cmp);

@@ -1,4 +1,5 @@
-//! The figures of a replay: one episode under every controller of its campaign, as the paper's Figures 8 and 10 to 20 show one.
+//! The figures of a replay: one episode under every controller of its campaign, as the paper's Figures 8 and 10 to 20
+//! show one.
 
 mod curves;
 mod encountered;
@@ -17,7 +18,8 @@ use crate::util::format::number;
 use curves::{Quantity, figure};
 use episode_data::{ControllerTrace, EpisodeView};
 
-/// Channels of which all quantities are drawn; beyond it, those of the agent that fared worst, and the errors of the others.
+/// Channels of which all quantities are drawn; beyond it, those of the agent that fared worst, and the errors of the
+/// others.
 const MOST_IN_FULL: usize = 24;
 /// Channels of which anything is drawn: bounds the size of a page.
 const MOST_CHANNELS: usize = 48;
@@ -75,7 +77,7 @@ fn document(scene: &EpisodeView<'_>) -> Document {
             .iter()
             .map(|reason| {
                 format!(
-                    "Flown in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
+                    "Simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
                 )
             })
             .collect(),

@@ -3,8 +3,8 @@
 /// What the library of the drawings calls the frames that it clips at, before their number.
 const CLIP: &str = "kuva-clip-";
 
-/// A page or picture in which the frames of its drawings are numbered as they come: the library counts those of the whole
-/// process, and the same drawing must have the same bytes.
+/// A page or picture in which the frames of its drawings are numbered as they come: the library counts those of the
+/// whole process, and the same drawing must have the same bytes.
 pub(crate) fn renumbered(text: &str) -> String {
     let mut numbers: Vec<&str> = Vec::new();
     let mut pieces = text.split(CLIP);

@@ -12,7 +12,7 @@ pub enum PaperError {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A campaign is none.
+    /// A campaign is invalid.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
     /// Its gains cannot be had.

@@ -57,7 +57,8 @@ impl Series {
         Self(pairs.collect())
     }
 
-    /// The part at a frequency over whole periods from a time on: amplitude, and the share of the variance that it explains.
+    /// The part at a frequency over whole periods from a time on: amplitude, and the share of the variance that it
+    /// explains.
     pub(super) fn wave(&self, rad_s: f64, from_s: f64) -> Wave {
         let end_s = self.0.last().map_or(0.0, |point| point.0);
         let period_s = TAU / rad_s;

@@ -21,8 +21,8 @@ const README: &str = "README.md";
 /// Its title, by which a directory of these figures is known.
 const TITLE: &str = "The paper's figures and claims";
 
-/// Claims a directory for the figures before any work is done. It may be absent, empty, or hold these figures already; anything
-/// else is refused unless `overwrite`.
+/// Claims a directory for the figures before any work is done. It may be absent, empty, or hold these figures already;
+/// anything else is refused unless `overwrite`.
 ///
 /// # Errors
 /// If the directory holds something else or cannot be written. Nothing is left behind then.
@@ -43,7 +43,8 @@ pub fn claim_dir(path: &Path, overwrite: bool) -> Result<OutputDir, OutputError>
     Ok(OutputDir::existing(path))
 }
 
-/// Whether a directory holds nothing, or these figures: by the first line of its text, or, if it has none, by the names.
+/// Whether a directory holds nothing, or these figures: by the first line of its text, or, if it has none, by the
+/// names.
 fn is_ours(dir: &Path) -> bool {
     let text = dir.join(README);
     if text.exists() {

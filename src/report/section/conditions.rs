@@ -23,7 +23,7 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
     let sheet = &evidence.ranking;
     if sheet.rows() == 0 {
         let text = match evidence.manifest.episodes {
-            1 => "One episode ranks nothing.",
+            1 => "A ranking needs at least two episodes.",
             _ => "Nothing is ranked: no condition varies by chance alone.",
         };
         return Section::new("Which conditions matter", vec![Block::text(text)]);
@@ -118,10 +118,10 @@ fn explained(evidence: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
     if grid.rows.is_empty() {
         let strata = match evidence.campaign.strata.all() {
             [] => "",
-            _ => " What the faults of the strata do is told above, stratum by stratum.",
+            _ => " What the faults of the strata do is shown above, stratum by stratum.",
         };
         blocks.push(Block::Text(format!(
-            "Of no drawn quantity it is sure, at 5 % after Holm's correction, that it moves failures or errors; ranking.csv has \
+            "No drawn quantity has a significant effect on failures or errors (5 %, Holm-corrected); ranking.csv has \
              all.{strata}"
         )));
     } else {
@@ -206,8 +206,8 @@ fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
     })
 }
 
-/// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where it does
-/// not apply.
+/// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where
+/// it does not apply.
 fn sizes(evidence: &RunData, condition: &str) -> Vec<f64> {
     let of_episode = |episode: u32| {
         let all = conditions(&evidence.campaign, &draw(&evidence.campaign, episode));

@@ -191,8 +191,8 @@ pub(crate) fn distributions(evidence: &RunData) -> Section {
     Section::new("Distribution of the errors", blocks)
 }
 
-/// Errors are drawn up to so many times the largest median, or the limit of the RMS error if that is more: those of flights that
-/// are about to diverge would leave no room for the others.
+/// Errors are drawn up to so many times the largest median, or the limit of the RMS error if that is more: those of
+/// flights that are about to diverge would leave no room for the others.
 const FRAME: f64 = 20.0;
 
 /// The empirical distribution of values by controller.

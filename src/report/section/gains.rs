@@ -119,7 +119,7 @@ fn attenuation_explained(evidence: &RunData) -> &'static str {
              happened, the certificate what cannot happen to the linear loop."
         }
         Some(_) => {
-            "No controller of this run has a certificate, so there is no level to hold the flights against."
+            "No controller of this run has a certificate, so there is no level to compare the episodes with."
         }
         None => {
             "The attenuation that flights show was not measured: it takes f64 on the CPU; run with --cross-check 32, or replay \
@@ -143,7 +143,7 @@ fn attenuation(evidence: &RunData) -> Grid {
         let holds = match (&group.largest, group.violated) {
             (None, _) => Cell::text(format!(
                 "not applicable: {}",
-                group.obstacle.as_deref().unwrap_or("nothing was flown")
+                group.obstacle.as_deref().unwrap_or("nothing was simulated")
             )),
             (Some(_), 0) => Cell::Verdict(true, "holds".into()),
             (Some(_), violated) => Cell::Verdict(false, format!("fails in {violated}")),

@@ -35,7 +35,7 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         ),
     );
     for leg in &manifest.legs {
-        add("flown on", engine(leg, manifest.legs.len() > 1));
+        add("simulated on", engine(leg, manifest.legs.len() > 1));
     }
     add(
         "number format",
@@ -45,27 +45,13 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         add("note", note.clone());
     }
     if let Some(check) = &manifest.cross_check {
-        add(
-            "cross-check with f64 on the CPU",
-            format!(
-                "{} episodes: |e| within {:.1e}, RMS error within {:.1e} relative ({} flights compared), {} verdicts differ{}",
-                check.episodes.len(),
-                check.largest_error_difference,
-                check.largest_rmse_difference,
-                check.compared,
-                check.verdicts_differ,
-                match check.sensitive {
-                    0 => String::new(),
-                    count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
-                }
-            ),
-        );
+        add("cross-check with f64 on the CPU", cross_checked(check));
     }
     let times = manifest.times;
     add(
         "wall-clock times",
         format!(
-            "synthesis {:.1} s, flying {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s",
+            "synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s",
             times.synthesis_s,
             times.loop_s,
             times.cross_check_s,
@@ -89,6 +75,22 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         vec![Block::Code(manifest.campaign.clone())],
     ));
     Section::new("Provenance", blocks)
+}
+
+/// What a cross-check found.
+fn cross_checked(check: &CrossCheck) -> String {
+    let left_out = match check.sensitive {
+        0 => String::new(),
+        count => format!("; {count} left out: {}", CrossCheck::SENSITIVE),
+    };
+    format!(
+        "{} episodes: |e| within {:.1e}, RMS error within {:.1e} relative ({} trajectories compared), {} verdicts differ{left_out}",
+        check.episodes.len(),
+        check.largest_error_difference,
+        check.largest_rmse_difference,
+        check.compared,
+        check.verdicts_differ,
+    )
 }
 
 fn engine(leg: &Segment, several: bool) -> String {

@@ -68,7 +68,7 @@ pub(crate) fn groups(groups: &[GroupAttenuation]) -> String {
                 format!("at most {largest:.4}, certified {certified:.4}; {holds} ({of})")
             }
             _ => {
-                let reason = group.obstacle.as_deref().unwrap_or("nothing was flown");
+                let reason = group.obstacle.as_deref().unwrap_or("nothing was simulated");
                 format!("not applicable: {reason}")
             }
         };

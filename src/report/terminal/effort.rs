@@ -11,8 +11,9 @@ struct Cost {
     signal: f64,
 }
 
-/// Measured on a core of an AMD EPYC: UAVs with 1 to 4 disturbances and 0 to 34 faults, from 37 to 750 ns. What a signal takes
-/// depends on its kind, and on how many of the lanes have it: that is within a factor of two of all of these.
+/// Measured on a core of an AMD EPYC: UAVs with 1 to 4 disturbances and 0 to 34 faults, from 37 to 750 ns. What a
+/// signal takes depends on its kind, and on how many of the lanes have it: that is within a factor of two of all of
+/// these.
 const UAV: Cost = Cost {
     bare: 22.0,
     signal: 12.0,

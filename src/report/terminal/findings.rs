@@ -55,7 +55,7 @@ fn flown(campaign: &Campaign, manifest: &Manifest) -> String {
     line(
         &mut text,
         &format!(
-            "{}: {} x {} {}, seed {}, {precision} on {}, {:.1} s of flying",
+            "{}: {} x {} {}, seed {}, {precision} on {}, {:.1} s of simulation",
             heading(&campaign.name),
             counted(manifest.episodes),
             campaign.team,
@@ -241,7 +241,7 @@ fn written(times: Times, out: &Path) -> String {
     line(
         &mut text,
         &format!(
-            "\nwritten to {} (synthesis {:.1} s, flying {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
+            "\nwritten to {} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
             out.display(),
             times.synthesis_s,
             times.loop_s,
@@ -264,10 +264,10 @@ fn counted(episodes: u32) -> String {
 fn cross_check(check: &CrossCheck, controllers: usize) -> String {
     let pairs = check.episodes.len() * controllers;
     let differences = if check.compared == 0 {
-        format!("no errors compared (all {pairs} flights fail or saturate)")
+        format!("no errors compared (all {pairs} episodes fail or saturate)")
     } else {
         format!(
-            "|e| within {:.1e}, RMS error within {:.1e} relative ({} of {pairs} flights neither fail nor saturate)",
+            "|e| within {:.1e}, RMS error within {:.1e} relative ({} of {pairs} episodes neither fail nor saturate)",
             check.largest_error_difference, check.largest_rmse_difference, check.compared,
         )
     };
@@ -356,8 +356,8 @@ fn worst(findings: &Findings, out: &Path) -> String {
     text
 }
 
-/// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and how many
-/// are left out.
+/// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and
+/// how many are left out.
 fn worth_showing(ratios: &[Ratio]) -> (Vec<&Ratio>, usize) {
     let (mut shown, mut channels): (Vec<&Ratio>, Vec<&Ratio>) =
         ratios.iter().partition(|ratio| ratio.scope == "group");

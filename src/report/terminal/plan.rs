@@ -101,7 +101,8 @@ fn design(campaign: &Campaign) -> Vec<String> {
     sentences
 }
 
-/// What is flown in each stratum. Those of a fault alone, which has their name, are told together where they are of one size.
+/// What is flown in each stratum. Those of a fault alone, which has their name, are told together where they are of one
+/// size.
 fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
     let turn = campaign.strata.turn();
     let alone = |stratum: &Stratum| match &stratum.faults {
@@ -165,8 +166,8 @@ fn whom(faults: &[&Fault]) -> &'static str {
     }
 }
 
-/// A sentence in lines of moderate length, all but the first further to the right: broken at commas, or where there are none
-/// between words.
+/// A sentence in lines of moderate length, all but the first further to the right: broken at commas, or where there are
+/// none between words.
 fn wrapped(sentence: &str) -> Vec<String> {
     let parts = sentence.split_inclusive(", ").flat_map(|part| {
         let whole = part.chars().count() < WIDTH / 2;

@@ -64,7 +64,7 @@ pub fn replay(
         line(
             &mut text,
             &format!(
-                "flown in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
+                "simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
             ),
         );
     }

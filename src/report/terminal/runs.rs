@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 /// True failure rates, as shares of the claimed one, for which the chances of success are shown.
 const TRUE_SHARES: [f64; 3] = [0.1, 0.25, 0.5];
 
-/// A number of failures, the episodes that still prove the claim with it, and the chances that a run of so many does, for each of
-/// the true rates.
+/// A number of failures, the episodes that still prove the claim with it, and the chances that a run of so many does,
+/// for each of the true rates.
 type Row = (u64, u64, [f64; TRUE_SHARES.len()]);
 
 fn rows(failure_rate: f64, confidence: f64, most_failures: u64) -> Vec<Row> {

@@ -1,5 +1,5 @@
-//! Where (24) applies, as far as the campaign and the draw tell: faults that are continuously differentiable in time. And why it
-//! does not.
+//! Where (24) applies, as far as the campaign and the draw tell: faults that are continuously differentiable in time.
+//! And why it does not.
 
 use crate::agent::ActuationKind;
 use crate::agent::Agent;
@@ -47,7 +47,7 @@ pub enum NotApplicable {
         kind: &'static str,
     },
     /// A flight that left the numbers.
-    #[error("the flight is not finite from {t_s:.3} s on")]
+    #[error("the trajectory is not finite from {t_s:.3} s on")]
     NotFinite {
         /// Since when, s.
         t_s: f64,
@@ -151,8 +151,8 @@ pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
     }
 }
 
-/// Whether a disturbance is continuously differentiable in time. Turbulence is not, nor is the ground's reaction: feet lift and
-/// touch down.
+/// Whether a disturbance is continuously differentiable in time. Turbulence is not, nor is the ground's reaction: feet
+/// lift and touch down.
 fn is_smooth_force(kind: DisturbanceKind) -> bool {
     match kind {
         // A gust begins and ends with a rate of zero, and so does a jet at the height of its rotors.
@@ -164,8 +164,9 @@ fn is_smooth_force(kind: DisturbanceKind) -> bool {
     }
 }
 
-/// Whether a jump of a fault on channel `struck` is a jump of f1 or f2 of channel `channel`. The torques of a leg act on all
-/// its joints at once; a UAV's channels, and whatever passes through a sensor, act on others through integrals only.
+/// Whether a jump of a fault on channel `struck` is a jump of f1 or f2 of channel `channel`. The torques of a leg act
+/// on all its joints at once; a UAV's channels, and whatever passes through a sensor, act on others through integrals
+/// only.
 fn meets(campaign: &Campaign, fault: &Fault, struck: usize, channel: usize) -> bool {
     match (fault.target, fault.link) {
         (FaultTarget::Plant, _) => true,

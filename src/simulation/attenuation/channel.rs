@@ -1,13 +1,14 @@
-//! Inequality (24) on one channel that has flown.
+//! Inequality (24) on one channel of a simulated episode.
 //!
-//! The state of (23) is x~ = [ebar, e~]: the true error with the true fault signals and the values that they had h, 2 h, ..
-//! before, and what the observer misses of it. What the smoothing model (18) leaves of the faults' motion, v = F' - A F, enters
-//! both halves alike, so that v~ = [v, v] and the denominator of (24) is twice the energy of v. The certificate (27) allows
-//! every pair of disturbances of the two halves; for those that are equal the largest attenuation is lower (7.17 instead of
-//! 10.13 for the paper's UAV), so a flight from rest stays well below the certified level.
+//! The state of (23) is x~ = [ebar, e~]: the true error with the true fault signals and the values that they had h, 2
+//! h, .. before, and what the observer misses of it. What the smoothing model (18) leaves of the faults' motion, v = F'
+//! - A F, enters both halves alike, so that v~ = [v, v] and the denominator of (24) is twice the energy of v. The
+//! certificate (27) allows every pair of disturbances of the two halves; for those that are equal the largest
+//! attenuation is lower (7.17 instead of 10.13 for the paper's UAV), so a flight from rest stays well below the
+//! certified level.
 //!
-//! There is no fault before t = 0. A fault that is not zero at t = 0 reaches the later taps as a jump at h, 2 h, ..: v is what
-//! lies between the jumps, and V(0) of (24) counts by how much they raise V, as it counts the state at t = 0.
+//! There is no fault before t = 0. A fault that is not zero at t = 0 reaches the later taps as a jump at h, 2 h, ..: v
+//! is what lies between the jumps, and V(0) of (24) counts by how much they raise V, as it counts the state at t = 0.
 
 use super::applicability::NotApplicable;
 use crate::synthesis::{
@@ -21,11 +22,11 @@ const MOST_STATES: usize = ERROR_STATES + 2 * (MAX_WINDOW + 1);
 /// Taps of each fault that the loop integrates.
 const FLOWN_TAPS: usize = (LOOP_STATES - ERROR_STATES) / 2;
 
-/// Largest share of K's terms by which the feedback may differ from K ehat: rounding, and that of a leg's mass matrix there
-/// and back.
+/// Largest share of K's terms by which the feedback may differ from K ehat: rounding, and that of a leg's mass matrix
+/// there and back.
 const ROUNDING: f64 = 1e-9;
-/// Largest relative difference of the energy of v between central differences over one step and over two. A jump doubles its
-/// share of the energy from the one to the other, and so does noise that is drawn anew at each step.
+/// Largest relative difference of the energy of v between central differences over one step and over two. A jump
+/// doubles its share of the energy from the one to the other, and so does noise that is drawn anew at each step.
 const RESOLUTION: f64 = 0.1;
 
 /// One channel at the start of a step.
@@ -66,7 +67,8 @@ pub struct Attenuation {
 }
 
 impl Attenuation {
-    /// The square root of the left side of (24) without V(0). A flight that starts far off may exceed the certified level.
+    /// The square root of the left side of (24) without V(0). A flight that starts far off may exceed the certified
+    /// level.
     #[must_use]
     pub fn level(&self) -> f64 {
         (self.weighted / self.model_error).sqrt()
@@ -130,12 +132,12 @@ impl AttenuationInequality {
 
     /// Both sides of (24) over a flight, from stretches of it that follow each other; the first begins at t = 0.
     ///
-    /// Integrals by the trapezoidal rule, derivatives of the faults by central differences: the result converges with the
-    /// square of the step, with the step itself where the taps' spacing is no multiple of it.
+    /// Integrals by the trapezoidal rule, derivatives of the faults by central differences: the result converges with
+    /// the square of the step, with the step itself where the taps' spacing is no multiple of it.
     ///
     /// # Errors
-    /// Why (24) does not apply: numbers that are not finite, a feedback other than K ehat, an integral other than that of e,
-    /// faults that the step does not resolve, or none at all.
+    /// Why (24) does not apply: numbers that are not finite, a feedback other than K ehat, an integral other than that
+    /// of e, faults that the step does not resolve, or none at all.
     pub fn attenuation(&self, stretches: &[Stretch<'_>]) -> Result<Attenuation, NotApplicable> {
         let mut whole = Sums::default();
         for stretch in stretches {
@@ -270,8 +272,8 @@ impl AttenuationInequality {
         full
     }
 
-    /// The observer's state at the next sample: what the loop integrates as it flew, the taps that it leaves out, a delay line
-    /// driven by the taps before and by the innovation, by the implicit trapezoidal rule.
+    /// The observer's state at the next sample: what the loop integrates as it flew, the taps that it leaves out, a
+    /// delay line driven by the taps before and by the innovation, by the implicit trapezoidal rule.
     fn advance(&self, estimate: &Full, samples: &[Sample], step_s: f64) -> Full {
         let mut next = self.start(&samples[1]);
         let spacing_s = self.design.smoothing.spacing_s;
@@ -369,8 +371,8 @@ impl ChannelTrajectory<'_> {
         self.lags.iter().any(begins)
     }
 
-    /// The channel at sample `k`, with the taps of the faults that have begun by sample `since`: a tap that lags is zero
-    /// until then.
+    /// The channel at sample `k`, with the taps of the faults that have begun by sample `since`: a tap that lags is
+    /// zero until then.
     fn instant(&self, k: usize, since: usize) -> Instant {
         let theorem = self.theorem;
         let mut truth = [0.0; MOST_STATES];
@@ -416,8 +418,8 @@ fn between(place: f64, value: impl Fn(usize) -> f64) -> f64 {
     }
 }
 
-/// Derivatives of both faults at every sample: central differences over `width` steps to each side, one-sided of the same order
-/// at the ends.
+/// Derivatives of both faults at every sample: central differences over `width` steps to each side, one-sided of the
+/// same order at the ends.
 fn rates(step_s: f64, samples: &[Sample], width: usize) -> Vec<[f64; 2]> {
     let last = samples.len() - 1;
     let over = 1.0 / (2.0 * width as f64 * step_s);

@@ -1,5 +1,5 @@
-//! The theorem beside the experiment: the attenuation that a flight under the fault-tolerant controller shows, inequality (24)
-//! of the paper, beside the level that its gains certify.
+//! The theorem beside the experiment: the attenuation that a flight under the fault-tolerant controller shows,
+//! inequality (24) of the paper, beside the level that its gains certify.
 //!
 #![doc = include_str!("README.md")]
 
@@ -33,8 +33,8 @@ pub struct Trajectory {
     pub start: Vec<Snapshot>,
 }
 
-/// The start of an episode in smaller steps: the fast poles of the loop make f1 move within a few milliseconds there, and the
-/// taps repeat that until the last of them has begun.
+/// The start of an episode in smaller steps: the fast poles of the loop make f1 move within a few milliseconds there,
+/// and the taps repeat that until the last of them has begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     /// Steps for each of the campaign's.
@@ -116,8 +116,8 @@ impl<'a> AttenuationAnalysis<'a> {
         }
     }
 
-    /// What (24) says about an episode; `whole`, its trajectory at every step in double precision, is asked for only where
-    /// there may be something to say.
+    /// What (24) says about an episode; `whole`, its trajectory at every step in double precision, is asked for only
+    /// where there may be something to say.
     #[must_use]
     pub fn of_episode(&self, episode: u32, whole: impl FnOnce() -> Vec<Snapshot>) -> Attenuations {
         let drawn = draw(self.campaign, episode);
@@ -168,7 +168,8 @@ impl<'a> AttenuationAnalysis<'a> {
         known.map(of_agent).collect()
     }
 
-    /// The theorem of each channel, or what is known before the flight to keep it from saying anything: `[agent][channel]`.
+    /// The theorem of each channel, or what is known before the flight to keep it from saying anything:
+    /// `[agent][channel]`.
     fn known(&self, episode: &Episode) -> Vec<Vec<Result<&AttenuationInequality, NotApplicable>>> {
         let of_channel = |agent: usize, channel: usize| {
             let group = self.campaign.group_of(channel);

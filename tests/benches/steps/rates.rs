@@ -17,8 +17,8 @@ const LAYOUTS: [(&str, Precision, Option<Simd>, u32); 4] = [
     ("f32 x 16", Precision::F32, Some(Simd::Avx512), 64),
 ];
 
-/// Steps of one agent per second and core under every controller and in every layout; `flop` are the floating-point operations
-/// of a step under each controller, and `unit` is what a step is called.
+/// Steps of one agent per second and core under every controller and in every layout; `flop` are the floating-point
+/// operations of a step under each controller, and `unit` is what a step is called.
 pub(crate) fn measure(
     criterion: &mut Criterion,
     campaign: &Campaign,

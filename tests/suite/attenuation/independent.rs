@@ -110,7 +110,8 @@ fn taps(case: &Case, a: &DMatrix<f64>, t_s: f64, since_s: f64) -> [DVector<f64>;
     [value, v]
 }
 
-/// Flies with the Runge-Kutta method at a quarter of the step or a finer one, and integrates both sides of (24) alongside.
+/// Flies with the Runge-Kutta method at a quarter of the step or a finer one, and integrates both sides of (24)
+/// alongside.
 fn fly(case: &Case, step_s: f64, finer: usize) -> Flown {
     let channel = augmented_channel(&UAV.design);
     let k = DMatrix::from_row_slice(1, STATES, &UAV.ftc.k);
@@ -291,7 +292,8 @@ fn the_attenuation_does_not_depend_on_the_size_of_the_disturbances() {
 
 #[test]
 fn an_initial_error_alone_exceeds_the_certified_level_and_yet_24_holds() {
-    // No fault to speak of; the observer knows the error, so that V(0) is that of the tracking alone, which is nearly tight.
+    // No fault to speak of; the observer knows the error, so that V(0) is that of the tracking alone, which is nearly
+    // tight.
     let case = Case {
         start: [0.0, 0.5, 0.0],
         faults: [|t| sine(t, [0.0, 1e-6, 3.0, 0.0]), zero],

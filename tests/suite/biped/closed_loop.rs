@@ -1,8 +1,8 @@
 //! A robot under a controller that measures without error, against an independent program's trajectories
 //! (tests/golden/biped_closed_loop.json says where they are from).
 //!
-//! Its coupling is to the same walk at shifted times. Here those are three robots that walk ahead of the first and, since
-//! nothing disturbs them, stay on their references.
+//! Its coupling is to the same walk at shifted times. Here those are three robots that walk ahead of the first and,
+//! since nothing disturbs them, stay on their references.
 
 use crate::common::{campaign, golden};
 use serde_json::Value;

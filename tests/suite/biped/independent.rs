@@ -1,5 +1,5 @@
-//! The loop of a robot's FTC against the paper's formulas in double precision, with the dynamics of `robot::dynamics`: no
-//! tables, no reduced operations, the full matrices of (19) and (20).
+//! The loop of a robot's FTC against the paper's formulas in double precision, with the dynamics of `robot::dynamics`:
+//! no tables, no reduced operations, the full matrices of (19) and (20).
 
 use super::everything;
 use crate::common::gains;
@@ -295,7 +295,8 @@ const QUANTITIES: [Quantity; 10] = [
     ("u", |shown| shown.u),
 ];
 
-/// Of each quantity the largest difference from the formulas over all robots, joints and steps, relative to its largest value.
+/// Of each quantity the largest difference from the formulas over all robots, joints and steps, relative to its largest
+/// value.
 fn differences(campaign: &Campaign, world: &World) -> Vec<(&'static str, f64)> {
     let gains = gains(campaign);
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);

@@ -84,8 +84,8 @@ fn single_precision_stays_within_the_contract_on_walks() {
     }
 }
 
-/// Outcomes with the first robot of the episode `wild` thrown out of its course, and without that; in that episode the others
-/// do not feel it.
+/// Outcomes with the first robot of the episode `wild` thrown out of its course, and without that; in that episode the
+/// others do not feel it.
 fn with_and_without<L: Lane>(campaign: &Campaign, wild: usize) -> [Vec<Vec<AgentOutcome>>; 2] {
     let gains = gains(campaign);
     let controller = Controller::new(&gains.loops()[0]);

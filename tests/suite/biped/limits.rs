@@ -47,7 +47,8 @@ fn torques_above_their_limits_are_counted_in_both_actuations_and_cut_in_one() {
             let above = above.count();
             assert!((5..90).contains(&above), "{above} of 96");
             for [largest, share, limit] in torques {
-                // Limits such as 88 and 139 N m are exact in both precisions, and no actuator fault adds to the command.
+                // Limits such as 88 and 139 N m are exact in both precisions, and no actuator fault adds to the
+                // command.
                 if cut {
                     assert!(largest <= limit);
                     assert_eq!(largest == limit, share > 0.0, "{largest} {share} {limit}");

@@ -33,7 +33,8 @@ fn unescaped(text: &str) -> String {
     plain.replace("&amp;", "&")
 }
 
-/// The elements of a well-formed XML text, in order. It knows what JUnit files need: a declaration, elements and attributes.
+/// The elements of a well-formed XML text, in order. It knows what JUnit files need: a declaration, elements and
+/// attributes.
 fn elements(text: &str) -> Vec<Element> {
     let declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     let mut rest = text
@@ -368,5 +369,5 @@ fn an_interrupted_flight_and_a_missing_cross_check_are_errors_and_a_failed_one_a
     assert!(message(&found, "error").contains("card: out of memory"));
     let found = written(&|manifest| manifest.cross_check.as_mut().unwrap().not_repeated = 2);
     assert_eq!(counts(&found), [3, 1, 0]);
-    assert!(message(&found, "failure").contains("2 flights give other numbers"));
+    assert!(message(&found, "failure").contains("2 episodes give other numbers"));
 }

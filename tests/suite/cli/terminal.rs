@@ -49,7 +49,9 @@ fn a_pipe_and_no_color_get_plain_text_and_who_asks_for_colours_gets_them() {
     assert_eq!(neither.stderr, plain.stderr);
     // Columns line up, coloured or not: the text is the same but for the times.
     let untimed = |text: &str| {
-        let lines = text.lines().filter(|line| !line.contains(" s of flying"));
+        let lines = text
+            .lines()
+            .filter(|line| !line.contains(" s of simulation"));
         let lines = lines.filter(|line| !line.starts_with("written to"));
         lines.map(String::from).collect::<Vec<_>>()
     };

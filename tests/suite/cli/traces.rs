@@ -167,8 +167,8 @@ fn agrees(panel: &str, colour: &str, flown: &Replay, pick: impl Fn(usize) -> f64
         let ((t1, v1), (t2, v2)) = (points[right - 1], points[right]);
         let value = v1 + (v2 - v1) * (t_s - t1) / (t2 - t1);
         let expected = pick(k as usize);
-        // A line stands for points within a tenth of a pixel; points and labels are written to hundredths of one, in time
-        // too.
+        // A line stands for points within a tenth of a pixel; points and labels are written to hundredths of one, in
+        // time too.
         let steep = ((v2 - v1) / (t2 - t1) * per_px).abs() * 0.02;
         let within = 0.15 * of_px.abs() + steep;
         assert!(

@@ -1,5 +1,5 @@
-//! What the past does within a step: a loop of one axis from plain formulas, in double precision, with the delays, holds and
-//! limits of rate spelled out for every stage.
+//! What the past does within a step: a loop of one axis from plain formulas, in double precision, with the delays,
+//! holds and limits of rate spelled out for every stage.
 
 use super::{AMPLITUDE_M, DRAG_N_S_M, FREQUENCY_RAD_S, MASS_KG, STEP_S, X, campaign, flight};
 use crate::common::gains;

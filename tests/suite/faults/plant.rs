@@ -81,7 +81,8 @@ fn val_an_inertia_grows_and_a_mass_does_not() {
     );
 }
 
-/// Roll and pitch of a UAV whose gyroscopic torques are small: as far as they are not, the channels say it of themselves.
+/// Roll and pitch of a UAV whose gyroscopic torques are small: as far as they are not, the channels say it of
+/// themselves.
 fn gyroscopic(agents: &[Vec<ChannelSample>], axis: usize) -> f64 {
     let rate = |axis: usize| agents[0][3 + axis % 3].e_rate;
     let [j, k] = [INERTIA_KG_M2[(axis + 1) % 3], INERTIA_KG_M2[(axis + 2) % 3]];

@@ -48,8 +48,8 @@ fn turbulence() -> Vec<Vec<Vec<f64>>> {
         .collect()
 }
 
-/// Standard deviation of the gusts along an axis, m/s, and the time in which the field passes, s: the formulas of MIL-F-8785C in
-/// feet, with 30 kn 20 ft above the ground.
+/// Standard deviation of the gusts along an axis, m/s, and the time in which the field passes, s: the formulas of
+/// MIL-F-8785C in feet, with 30 kn 20 ft above the ground.
 fn specified(axis: usize) -> (f64, f64) {
     let height_ft: f64 = 6.0 / 0.3048;
     let speed_ft_s = 20.0 / 0.3048;
@@ -111,7 +111,8 @@ fn val_turbulence_has_the_spectrum_of_the_standard() {
                 }
             }
             let ratio = found / count / expected;
-            // Each value of a periodogram scatters by its mean; windows leak, up to 4 % here. Five times, over all of them.
+            // Each value of a periodogram scatters by its mean; windows leak, up to 4 % here. Five times, over all of
+            // them.
             let scatter = 5.0 / (count * band.len() as f64).sqrt() + 0.04;
             assert!(
                 (ratio - 1.0).abs() < scatter,

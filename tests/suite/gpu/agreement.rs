@@ -1,4 +1,5 @@
-//! Whether flights of the GPU agree with those of the CPU: one comparison, which parity demands and every mutation fails.
+//! Whether flights of the GPU agree with those of the CPU: one comparison, which parity demands and every mutation
+//! fails.
 
 use super::Gains;
 use std::fmt;
@@ -9,8 +10,8 @@ use urts_mc::draw::Episode;
 use urts_mc::model::episode::AgentOutcome;
 use urts_mc::model::metric::ChannelOutcome;
 
-/// A metric, given the seconds from settle_s on; it is compared relative to its size, or to one below which singles have not the
-/// digits.
+/// A metric, given the seconds from settle_s on; it is compared relative to its size, or to one below which singles
+/// have not the digits.
 type Metric = (&'static str, fn(&ChannelOutcome, f64) -> f64, f64);
 /// Mean errors of 2 cm or 1 degree; efforts and commands of 1 N or N m; accelerations of 1 % of gravity; f2 as e.
 const METRICS: [Metric; 7] = [
@@ -41,7 +42,7 @@ pub(super) struct Against {
     saturated_steps: Option<f64>,
 }
 
-/// The contract between backends (section 7 of the model).
+/// The contract between backends (`simulation::cross_check`).
 pub(super) const CONTRACT: Against = Against {
     name: "double",
     precision: Precision::F64,
@@ -53,8 +54,8 @@ pub(super) const CONTRACT: Against = Against {
     saturated_steps: None,
 };
 
-/// The same operations in single precision, which differ in the rounding of fused products alone: three to five times the
-/// largest differences of a million steps on the campaigns here.
+/// The same operations in single precision, which differ in the rounding of fused products alone: three to five times
+/// the largest differences of a million steps on the campaigns here.
 pub(super) const TWIN: Against = Against {
     name: "single",
     precision: Precision::F32,

@@ -6,7 +6,8 @@ use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::gpu::{GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 
-/// Everything at once, short: 600 steps are two flushes of the metrics and 150 blocks of noise, and something is left over.
+/// Everything at once, short: 600 steps are two flushes of the metrics and 150 blocks of noise, and something is left
+/// over.
 fn short(episodes: u32, controllers: &str) -> (Campaign, Gains) {
     let episodes = format!("episodes={episodes}");
     let controllers = format!("controllers=[{controllers}]");
@@ -33,7 +34,8 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
     let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 70);
     assert!(all.iter().any(|flown| flown.contains("diverged: true")));
-    // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and are as long as the adapter allows.
+    // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and are as long as the adapter
+    // allows.
     for (batch, steps) in [
         (None, None),
         (Some(64), Some(600)),

@@ -32,7 +32,8 @@ fn val_all_faults_of_a_uav_agree() {
     ] {
         assert!(campaign.disturbances.iter().any(|one| one.kind == kind));
     }
-    // Without jets, each axis flies on its own; they are the last of the disturbances, so what was drawn for the others stays.
+    // Without jets, each axis flies on its own; they are the last of the disturbances, so what was drawn for the others
+    // stays.
     let mut apart = campaign.clone();
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
     apart.disturbances.retain(|one| !is_jet(one.kind));

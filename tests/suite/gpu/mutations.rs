@@ -1,5 +1,5 @@
-//! Changed shaders and gains, each of which the comparison of the parity tests must notice: a comparison that cannot fail
-//! shows nothing.
+//! Changed shaders and gains, each of which the comparison of the parity tests must notice: a comparison that cannot
+//! fail shows nothing.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
 use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixed_thrust};

@@ -1,5 +1,5 @@
-//! Every kind of campaign, all episodes of which differ: each episode, controller, agent and channel is compared with the CPU,
-//! in double precision within the contract and in single precision within rounding.
+//! Every kind of campaign, all episodes of which differ: each episode, controller, agent and channel is compared with
+//! the CPU, in double precision within the contract and in single precision within rounding.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN, failed, figures, saturated};
 use super::{Gains, LONGEST, fly, mixed, mixed_thrust, team_of};
@@ -165,8 +165,8 @@ const QUANTITIES: [Quantity; 9] = [
     ("u", |shown| shown.u, 4e-2),
 ];
 
-/// Follows some episodes of a campaign, every 20 ms, and demands that they agree with double precision and end as they do in
-/// a flight of all episodes; returns how many flights were followed to the end.
+/// Follows some episodes of a campaign, every 20 ms, and demands that they agree with double precision and end as they
+/// do in a flight of all episodes; returns how many flights were followed to the end.
 pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
     let gains: Gains = gains(campaign).loops();
     let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();

@@ -1,5 +1,6 @@
-//! Spans of steps: the same bits for the shortest, for the longest that an adapter may take, and for those that follow the
-//! time of the last. Large teams, many signals and long memories have the most iterations of loops, which software drivers bound.
+//! Spans of steps: the same bits for the shortest, for the longest that an adapter may take, and for those that follow
+//! the time of the last. Large teams, many signals and long memories have the most iterations of loops, which software
+//! drivers bound.
 
 use super::determinism::digits;
 use super::{Gains, fly_all, gpu_campaign, jets, linked, team_of};
@@ -12,7 +13,8 @@ use urts_mc::simulation::{Backend, RunOptions, fly};
 
 const PID: &str = "controllers=[\"pid\"]";
 
-/// UAVs under thrust that are coupled: all six channels in one group, whose loops over the team run in each of four stages.
+/// UAVs under thrust that are coupled: all six channels in one group, whose loops over the team run in each of four
+/// stages.
 fn thrust(team: usize, episodes: u32, duration_s: f64) -> Campaign {
     let changes = [
         PID,
@@ -35,8 +37,8 @@ fn blown() -> Campaign {
     team_of(&base, 33)
 }
 
-/// Flies a campaign in spans of every kind and demands the same bits, of flights and of a trace that shows nothing on the way;
-/// returns the longest span and the steps of an episode.
+/// Flies a campaign in spans of every kind and demands the same bits, of flights and of a trace that shows nothing on
+/// the way; returns the longest span and the steps of an episode.
 fn alike(gpu: &Gpu, campaign: &Campaign) -> [u32; 2] {
     let gains: Gains = gains(campaign).loops();
     let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
@@ -57,7 +59,8 @@ fn alike(gpu: &Gpu, campaign: &Campaign) -> [u32; 2] {
     [most, steps]
 }
 
-/// The same of a campaign whose episodes are longer than a dispatch of a software adapter may be, or it would show little.
+/// The same of a campaign whose episodes are longer than a dispatch of a software adapter may be, or it would show
+/// little.
 fn alike_beyond_one_dispatch(campaign: &Campaign) {
     let Some(gpu) = gpu_or_skip() else { return };
     let [most, steps] = alike(&gpu, campaign);

@@ -1,7 +1,7 @@
 //! Which file uses which, read from the text: `use` lines, and paths elsewhere.
 //!
-//! A name that a module only passes on (`pub use`) leads to the file that defines it, so a façade is no arrow; the parent of a
-//! file is one only where the file uses what the parent itself defines.
+//! A name that a module only passes on (`pub use`) leads to the file that defines it, so a façade is no arrow; the
+//! parent of a file is one only where the file uses what the parent itself defines.
 
 use super::Source;
 use std::collections::{BTreeMap, BTreeSet};
@@ -133,7 +133,8 @@ impl File {
         let mut named: BTreeSet<Module> = items.cloned().collect();
         for path in paths(&self.body) {
             let local = known().find(|own| own.last() == path.first());
-            // A single word is a name of the file's own, or one that it passes on; `pub(super)` and `mod x;` are no uses.
+            // A single word is a name of the file's own, or one that it passes on; `pub(super)` and `mod x;` are no
+            // uses.
             let absolute = absolute(&path, &self.module, modules).filter(|_| path.len() > 1);
             match (absolute, local) {
                 (Some(path), _) => named.insert(path),

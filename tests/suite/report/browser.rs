@@ -33,7 +33,8 @@ fn browser() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page in a frame of a width and measures it; `extra` is markup added to it. (A window is never narrower than 500 px.)
+/// Opens a page in a frame of a width and measures it; `extra` is markup added to it. (A window is never narrower than
+/// 500 px.)
 fn open(browser: &Path, page: &Path, width: u32, dark: bool, extra: &str) -> Found {
     let place = TempDir::new().unwrap();
     let copy = place.path().join("page.html");

@@ -157,7 +157,8 @@ fn jacobian_is_the_derivative_of_the_ankle() {
     }
 }
 
-/// Roll and yaw change their sign. One product of inertia of the right shank has the wrong sign at the source of the table.
+/// Roll and yaw change their sign. One product of inertia of the right shank has the wrong sign at the source of the
+/// table.
 #[test]
 fn legs_of_the_g1_are_mirror_images_but_for_one_product_of_inertia() {
     let mut robot = load("g1_12dof");

@@ -121,8 +121,9 @@ fn val_replicate_means_have_the_printed_t_quantiles() {
                 "{end} for {freedom}"
             );
         }
-        // Moved by t - 1 standard errors, the mean is t of them away from 0, where the p-value is 5 %: within 0.03 points, as the
-        // density at t is at most a quarter of that per printed unit. Without the move it is far from that.
+        // Moved by t - 1 standard errors, the mean is t of them away from 0, where the p-value is 5 %: within 0.03
+        // points, as the density at t is at most a quarter of that per printed unit. Without the move it is far from
+        // that.
         let moved: Vec<f64> = values.iter().map(|value| value + (t - 1.0) / n).collect();
         let p = replicate_p(&moved).unwrap();
         assert!((p - 0.05).abs() < 3e-4, "{p} for {freedom}");
@@ -159,8 +160,8 @@ fn one_replicate_has_no_interval_and_infinite_ones_no_mean() {
 
 #[test]
 fn the_test_over_replicates_keeps_its_level() {
-    // Eight normal replicates, 4,000 times: rejected at 5 % in 3.6 to 6.4 % of them (four standard errors of 0.34 points), and
-    // far more often if the mean is one standard deviation off.
+    // Eight normal replicates, 4,000 times: rejected at 5 % in 3.6 to 6.4 % of them (four standard errors of 0.34
+    // points), and far more often if the mean is one standard deviation off.
     let mut random = SplitMix64(19);
     let mut rejected = |mean: f64| {
         let mut sample = || (0..8).map(|_| mean + random.normal()).collect::<Vec<f64>>();

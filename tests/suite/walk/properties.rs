@@ -130,8 +130,8 @@ proptest! {
         let piece = (piece * (points.len() - 1) as f64) as usize;
         let (from, to) = (points[piece].0, points[piece + 1].0);
         let length = to - from;
-        // Inside a piece, central differences are exact for the second derivative, which is linear, and off by a sixth of the
-        // third times h^2 for the first; h is chosen against rounding.
+        // Inside a piece, central differences are exact for the second derivative, which is linear, and off by a sixth
+        // of the third times h^2 for the first; h is chosen against rounding.
         let (x, h) = (from + place * length, 1e-3 * length);
         let [a, at, b] = [x - h, x, x + h].map(|x| spline.at(x)[0]);
         let third = (b.acceleration - a.acceleration) / (2.0 * h);

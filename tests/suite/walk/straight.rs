@@ -131,8 +131,8 @@ fn val_joint_angles_rates_and_accelerations_match() {
         let accelerations = difference(&joints.map(|joint| joint.acceleration), &row["qdd"]);
         worst = [worst[0].max(rates), worst[1].max(accelerations)];
     }
-    // Both sides solve for the angles to 1e-12 rad; differences over 10 ms multiply that by 1e2 and twice by 1e4, the spline
-    // by a few.
+    // Both sides solve for the angles to 1e-12 rad; differences over 10 ms multiply that by 1e2 and twice by 1e4, the
+    // spline by a few.
     holds("q'", worst[0], 1e-9);
     holds("q''", worst[1], 1e-7);
 }
@@ -163,8 +163,8 @@ fn val_zmp_error_and_support_margins_match() {
     }
 }
 
-/// Our pelvis follows the tracker's motion exactly, ends included. The reference's second derivative comes from a spline with
-/// not-a-knot ends through the same samples, which differs in the first and the last ten of them.
+/// Our pelvis follows the tracker's motion exactly, ends included. The reference's second derivative comes from a
+/// spline with not-a-knot ends through the same samples, which differs in the first and the last ten of them.
 fn with_the_reference_pelvis(walk: &Walk) -> Walk {
     let points: Vec<(f64, [f64; 3])> = walk
         .times_s()

@@ -23,7 +23,8 @@ fn ankles(robot: &Robot, walk: &Walk, t_s: f64) -> [nalgebra::Vector3<f64>; 2] {
 /// Balance, standing feet, ground and joint limits of a walk.
 fn is_sound(robot: &Robot, walk: &Walk) {
     let [pendulum, links] = margins(robot, walk);
-    // That of all links is the pendulum's model error (paper, section III-B): measured, and bounded where a test says so.
+    // That of all links is the pendulum's model error (paper, section III-B): measured, and bounded where a test says
+    // so.
     println!("margins: pendulum {pendulum:.4} m, all links {links:.4} m");
     // The tracker's error is below 2 mm; the reference point of the G1 is 30 mm from the edge of its sole.
     assert!(pendulum > 0.02);
@@ -38,7 +39,8 @@ fn is_sound(robot: &Robot, walk: &Walk) {
         let swinging = walk.feet.swing_at(t_s).map(|swing| swing.foot);
         for (foot, ankle) in Foot::BOTH.into_iter().zip(ankles(robot, walk, t_s)) {
             let clearance = ankle.z - walk.gait.ankle_height_m;
-            // Errors of cubics over 10 ms at joint accelerations of tens of rad/s^2 whose derivative jumps at lift and touch.
+            // Errors of cubics over 10 ms at joint accelerations of tens of rad/s^2 whose derivative jumps at lift and
+            // touch.
             assert!(clearance > -5e-5, "{foot} foot {clearance} m at {t_s} s");
             if swinging == Some(foot) {
                 swung += 1;

@@ -1,5 +1,5 @@
-//! A robot from a URDF: two legs of six revolute joints on a pelvis. Every other joint is fixed, and its link is part of the
-//! one that carries it.
+//! A robot from a URDF: two legs of six revolute joints on a pelvis. Every other joint is fixed, and its link is part
+//! of the one that carries it.
 
 mod syntax;
 mod tree;

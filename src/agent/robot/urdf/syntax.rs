@@ -24,8 +24,8 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Robot, RobotError> {
     })
 }
 
-/// Line and start tag of the link or joint that causes an error: the first one that, read alone, is not closed or causes the
-/// same. The reader itself does not say.
+/// Line and start tag of the link or joint that causes an error: the first one that, read alone, is not closed or
+/// causes the same. The reader itself does not say.
 fn place_of(text: &str, error: &str) -> Option<String> {
     let mut starts: Vec<(usize, &str)> = ["link", "joint"]
         .into_iter()

@@ -167,8 +167,8 @@ impl<'a> Tree<'a> {
         Ok(pelvis)
     }
 
-    /// The links that are fixed to a link, in its frame, away from the moving joint that carries it. Above the pelvis only
-    /// fixed joints are followed; beyond a floating one is the ground.
+    /// The links that are fixed to a link, in its frame, away from the moving joint that carries it. Above the pelvis
+    /// only fixed joints are followed; beyond a floating one is the ground.
     pub(super) fn rigid(&self, first: usize) -> Result<Rigid<'a>, RobotError> {
         let mut rigid = Rigid {
             body: None,

@@ -98,8 +98,8 @@ fn accelerations<L: Lane>(
     let b1 = damped(j1, rate[1], torque[1]) - load_1.moment[2];
     let b0 = damped(j0, rate[0], torque[0]) - load_0.moment[2] - own_0;
 
-    // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints before.
-    // With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.
+    // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints
+    // before. With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.
     let one = L::number(1.0);
     let body_5 = tip(j5);
     let p = carried(k5, j5, t5, &momentum(&body_5));

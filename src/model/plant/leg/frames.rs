@@ -23,7 +23,8 @@ impl<R: Real> LegModel<R> {
     #[must_use]
     pub fn new(leg: &[LegJoint; LEG_JOINTS], gravity_m_s2: Vector3<f64>) -> Self {
         let mut links = along_axes(leg);
-        // Whatever turns the pelvis about the first axis goes into the first angle: gravity lies in the plane of x and z.
+        // Whatever turns the pelvis about the first axis goes into the first angle: gravity lies in the plane of x and
+        // z.
         let gravity = links[0].rotation.inverse() * gravity_m_s2;
         let mut offset = [0.0; LEG_JOINTS];
         offset[0] = -gravity.y.atan2(gravity.x);
@@ -131,7 +132,8 @@ fn classify(twist: f64) -> Twist {
 
 impl Link {
     /// The rotation as turns about z before and after a twist about x. Between parallel axes only the sum of the turns
-    /// matters, and the first takes the origin to the x axis; near them, what is lost in one turn the other makes up for.
+    /// matters, and the first takes the origin to the x axis; near them, what is lost in one turn the other makes up
+    /// for.
     fn angles(&self) -> (f64, f64, f64) {
         let r = self.rotation.matrix();
         let before = match classify(r.m13.hypot(r.m23).atan2(r.m33)) {

@@ -351,8 +351,8 @@ pub(super) fn tip<L: Lane>(joint: &Joint<L::Real>) -> Composite<L> {
     }
 }
 
-/// The body beyond a joint, in the frame before, together with the link there. Without mass, its first moment is the same
-/// about every point.
+/// The body beyond a joint, in the frame before, together with the link there. Without mass, its first moment is the
+/// same about every point.
 #[inline(always)]
 pub(super) fn composite<L: Lane>(
     twist: Twist,

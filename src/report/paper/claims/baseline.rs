@@ -79,8 +79,8 @@ pub(super) fn smaller(flights: &Scenarios) -> Found {
     }
 }
 
-/// The errors of some channels at the frequency of the sensor fault, beside its even harmonics: a symmetric square wave has only
-/// odd ones.
+/// The errors of some channels at the frequency of the sensor fault, beside its even harmonics: a symmetric square wave
+/// has only odd ones.
 pub(super) fn visible(flights: &Scenarios, channels: &[usize]) -> Found {
     let base_rad_s = flights.met.fault_rad_s();
     let of = |harmonic: f64| {

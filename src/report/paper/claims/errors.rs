@@ -86,12 +86,14 @@ pub(super) fn tracking(flights: &Scenarios, within_s: f64) -> Found {
     }
 }
 
-/// When the estimation errors are at their own calm level for the first time, and what the initial errors have to do with them.
+/// When the estimation errors are at their own calm level for the first time, and what the initial errors have to do
+/// with them.
 pub(super) fn estimation(flights: &Scenarios, within_s: f64) -> Found {
     let share = worst(flights, |channel| {
         left(flights, channel, estimation_error).largest(0.0..f64::INFINITY)
     });
-    // What follows the start is like it: later stretches, where a robot stands still, would be too calm a measure of its walk.
+    // What follows the start is like it: later stretches, where a robot stands still, would be too calm a measure of
+    // its walk.
     let begin_s = worst(flights, |channel| {
         let series = flights.series(Scenario::Ftc, channel, estimation_error);
         let steady = series.largest(first_stretch(flights));

@@ -26,7 +26,8 @@ pub(super) struct Found {
     pub(super) holds: Option<bool>,
 }
 
-/// Judges a claim by the flights that it reads; nothing is decided by a flight that diverges, or by numbers that are none.
+/// Judges a claim by the flights that it reads; nothing is decided by a flight that diverges, or by numbers that are
+/// none.
 pub(super) fn decide(
     place: &'static str,
     claim: &'static str,

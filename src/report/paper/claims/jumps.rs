@@ -4,8 +4,8 @@ use super::found::SETTLED_S;
 use crate::report::paper::flights::Scenarios;
 use crate::report::paper::measures::{Series, top};
 
-/// What is read of the time between two jumps of the sensor fault, as shares of it: the peak around the jump, from before it; the
-/// calm part, clear of this jump and of the next; what a stretch between jumps is.
+/// What is read of the time between two jumps of the sensor fault, as shares of it: the peak around the jump, from
+/// before it; the calm part, clear of this jump and of the next; what a stretch between jumps is.
 pub(super) const PEAK: [f64; 2] = [-0.1, 0.3];
 pub(super) const CALM: [f64; 2] = [0.6, 0.9];
 pub(super) const STRETCH: [f64; 2] = [0.4, 0.9];
