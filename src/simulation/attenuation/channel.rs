@@ -1,11 +1,11 @@
 //! Inequality (24) on one channel of a simulated episode.
 //!
-//! The state of (23) is x~ = [ebar, e~]: the true error with the true fault signals and the values that they had h, 2
-//! h, .. before, and what the observer misses of it. What the smoothing model (18) leaves of the faults' motion, v = F'
-//! - A F, enters both halves alike, so that v~ = [v, v] and the denominator of (24) is twice the energy of v. The
-//! certificate (27) allows every pair of disturbances of the two halves; for those that are equal the largest
-//! attenuation is lower (7.17 instead of 10.13 for the paper's UAV), so a flight from rest stays well below the
-//! certified level.
+//! The state of (23) is x~ = [ebar, e~]: the true error with the true fault signals and the values that they had
+//! h, 2 h, .. before, and what the observer misses of it. What the smoothing model (18) leaves of the faults' motion,
+//! v = F' - A F, enters both halves alike, so that v~ = [v, v] and the denominator of (24) is twice the energy of v.
+//! The certificate (27) allows every pair of disturbances of the two halves; for those that are equal the largest
+//! attenuation is lower (7.17 instead of 10.13 for the paper's UAV), so an episode that starts from rest stays well
+//! below the certified level.
 //!
 //! There is no fault before t = 0. A fault that is not zero at t = 0 reaches the later taps as a jump at h, 2 h, ..: v
 //! is what lies between the jumps, and V(0) of (24) counts by how much they raise V, as it counts the state at t = 0.
