@@ -142,8 +142,13 @@ pub(crate) fn tables(campaign: &Campaign, precision: Precision) -> Tables {
     tables
 }
 
-/// Name of the adapter: hardware if there is any, else the first; none where there is none and none is required.
+/// Name of the adapter: hardware if there is any, else the first; none where there is none and none is required, and none
+/// under URTS_REQUIRE_GPU=0.
 pub(crate) fn adapter_or_skip() -> Option<String> {
+    if std::env::var("URTS_REQUIRE_GPU").as_deref() == Ok("0") {
+        println!("SKIPPED: no adapter is wanted");
+        return None;
+    }
     let name = adapters().first().map(|report| report.adapter.name.clone());
     if name.is_none() {
         assert!(
