@@ -42,7 +42,7 @@ pub(crate) enum Command {
     #[command(after_help = examples(&[
         "urts-mc run campaigns/smoke.toml",
         "urts-mc run campaigns/uav-paper.toml --episodes 256 --backend cpu --out reports/trial",
-        "urts-mc run campaigns/smoke.toml --set agent.team=2 --set fault.0.onset_s=0 --out reports/early",
+        "urts-mc run campaigns/smoke.toml --set fault.0.onset_s=0 --set coupling= --out reports/early",
         "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
     ]))]
     Run(RunArguments),
