@@ -115,7 +115,7 @@ fn code_of(error: &anyhow::Error) -> Code {
     }
     match error.downcast_ref() {
         Some(RunError::Gains(error)) => return of_gains(error),
-        Some(RunError::Simulation(error)) => return of_flight(error),
+        Some(RunError::Simulation(error)) => return of_simulation(error),
         _ => {}
     }
     match error.downcast_ref() {
@@ -143,9 +143,8 @@ fn output_of(error: &anyhow::Error) -> Option<&OutputError> {
             _ => None,
         }
     }
-    match error.downcast_ref() {
-        Some(RunError::Output(error)) => return Some(error),
-        _ => {}
+    if let Some(RunError::Output(error)) = error.downcast_ref() {
+        return Some(error);
     }
     if let Some(ReplayError::Run(error)) = error.downcast_ref() {
         return Some(error);
@@ -159,7 +158,7 @@ fn output_of(error: &anyhow::Error) -> Option<&OutputError> {
     error.downcast_ref()
 }
 
-fn of_flight(error: &SimulationError) -> Code {
+fn of_simulation(error: &SimulationError) -> Code {
     match error {
         SimulationError::Threads { .. } => Code::Usage,
         SimulationError::NoGpu(GpuError::NoHardware { .. } | GpuError::NoSuchAdapter { .. }) => {
