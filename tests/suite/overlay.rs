@@ -329,7 +329,7 @@ proptest! {
         if let Ok(setting) = written.parse::<Setting>() {
             prop_assert_eq!(setting.to_string(), written);
             let path = "c.toml".as_ref();
-            let _ = Campaign::parse_with(&smoke(), path, &[setting.clone()]);
+            let _ = Campaign::parse_with(&smoke(), path, std::slice::from_ref(&setting));
             // Over nothing, all on the way to it is made.
             let nothing = Campaign::parse_with("", path, &[setting.clone(), setting]);
             prop_assert!(nothing.is_err());
