@@ -46,7 +46,7 @@ pub(crate) enum Command {
         "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
     ]))]
     Run(RunArguments),
-    /// Check a campaign, synthesize its gains and show what would be drawn; simulates nothing
+    /// Check a campaign, synthesize its gains, show what would be drawn; simulates nothing
     #[command(after_help = examples(&[
         "urts-mc check campaigns/uav-paper.toml",
         "urts-mc check campaigns/uav-paper.toml --episodes 4096 --json",
@@ -150,7 +150,7 @@ pub(crate) struct RunArguments {
         verbatim_doc_comment
     )]
     pub(crate) precision: PrecisionChoice,
-    /// Words of the CPU's episodes in f32; avx2 and avx512 give the same
+    /// Layout of the CPU's episodes in f32; avx2 and avx512 give the same
     /// result
     #[arg(
         long,

@@ -52,7 +52,7 @@ pub struct RunOptions {
     pub backend: Backend,
     /// Number format of the episode loop; double precision flies on the CPU.
     pub precision: Precision,
-    /// Words of the CPU's single-precision episodes; the widest of this processor if not given.
+    /// Layout of the CPU's single-precision episodes; the widest of this processor if not given.
     pub simd: Option<Simd>,
     /// Threads; all cores if zero.
     pub threads: usize,
@@ -111,7 +111,7 @@ pub struct Segment {
 pub enum Engine {
     /// The CPU backend.
     Cpu {
-        /// Words of single-precision episodes.
+        /// Layout of single-precision episodes.
         simd: Option<Simd>,
         /// Threads.
         threads: usize,

@@ -80,7 +80,7 @@ fn every_example_of_the_help_works_where_the_campaigns_are() {
     // In the order of the commands: a run is there before it is replayed.
     for help in &helps {
         let examples = examples(help);
-        assert!((1..=3).contains(&examples.len()), "{help}");
+        assert!((1..=4).contains(&examples.len()), "{help}");
         for example in examples {
             let line = example.split(" > ").next().unwrap();
             let mut words = line.split_whitespace();

@@ -133,9 +133,9 @@ fn gains_are_those_of_the_settings() {
     let place = Place::smoke(&[]);
     let gains =
         |more: &[&str]| place.succeeds(&[&["synthesize", "c.toml", "--json"], more].concat());
-    let other = gains(&["--set", "synthesis.position.rho=30.0"]);
+    let other = gains(&["--set", "synthesis.position.rho=40.0"]);
     assert!(other != gains(&[]));
-    assert!(other == gains(&["--set", "synthesis.position={ rho = 30.0 }"]));
+    assert!(other == gains(&["--set", "synthesis.position={ rho = 40.0 }"]));
     place.refuses(
         &["synthesize", "--preset", "uav-paper", "--set", "seed=3"],
         2,
