@@ -184,7 +184,7 @@ fn what_is_wrong_with_a_setting_is_said_with_the_setting_as_its_place() {
         // Values beyond their limits.
         (
             "fault.0.magnitude=4",
-            "c.toml: fault[0].magnitude (--set fault.0.magnitude=4) = 4.0: must lie within [0, 1]; give a value",
+            "c.toml: fault[0].magnitude (--set fault.0.magnitude=4) = 4.0: must lie within [0, 1]; give values within the limit",
         ),
         (
             "agent.mass_scale.uniform.0=-1",
