@@ -406,13 +406,6 @@ const CONTROLS: &[Control] = &[
         "group_end_step",
     ),
     control(
-        "team",
-        "step_channel(stage, response.error_acceleration, sensor_fault, off, response.told);",
-        "for (var k = 0u; k < 60u; k++) { own.held_feedback = own.held_feedback + own.kappa; }
-        step_channel(stage, response.error_acceleration, sensor_fault, off, response.told);",
-        "iterations",
-    ),
-    control(
         "episode",
         "own.held_feedback = stored_number(MEMORY + 3u);",
         "own.held_feedback = stored_number(MEMORY);",

@@ -22,8 +22,6 @@ const LOOSE: f64 = 1e-4;
 pub(super) struct Lab {
     gpu: &'static Mutex<Gpu>,
     change: Option<(&'static str, &'static str)>,
-    /// Whether loops are counted.
-    counts: bool,
 }
 
 /// What is probed, and with what.
@@ -66,11 +64,7 @@ impl Lab {
             None => Err(GpuError::NoHardware { found: Vec::new() }),
         });
         match opened {
-            Ok(gpu) => Some(Self {
-                gpu,
-                change: None,
-                counts: false,
-            }),
+            Ok(gpu) => Some(Self { gpu, change: None }),
             Err(error) => {
                 assert!(
                     std::env::var("URTS_REQUIRE_GPU").as_deref() != Ok("1"),
@@ -87,16 +81,6 @@ impl Lab {
         Self {
             gpu: self.gpu,
             change: Some((old, new)),
-            counts: self.counts,
-        }
-    }
-
-    /// The same, and loops are counted.
-    pub(super) fn counting(&self) -> Self {
-        Self {
-            gpu: self.gpu,
-            change: self.change,
-            counts: true,
         }
     }
 
@@ -193,9 +177,6 @@ impl Lab {
             // In the text of another plant, it need not be there.
             assert!(text.matches(old).count() <= 1, "{old:?} is there once");
             text = text.replace(old, new);
-        }
-        if self.counts {
-            text = super::iterations::counting(&text);
         }
         let first = job.cases.len() * job.shape.words().drawn();
         let taken = job.cases[0].taken.len();

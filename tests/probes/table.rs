@@ -2,7 +2,7 @@
 
 use super::harness::{Compared, Lab};
 use super::world::World;
-use super::{buffers, groups, iterations, leg, loops, memory, pure, shapes, signals, vortex};
+use super::{buffers, groups, leg, loops, memory, pure, shapes, signals, vortex};
 use crate::model::episode::PlantKind;
 
 /// A probe of one or a few functions.
@@ -329,11 +329,6 @@ pub(super) const SIGNALS: &[Probe] = &[
 
 /// Agents and teams, and the buffers that they live in.
 pub(super) const GROUPS: &[Probe] = &[
-    probe!(
-        "iterations",
-        ["group_advance", "group_show", "resume", "keep"],
-        over_shapes!(iterations::counted)
-    ),
     probe!(
         "slot",
         ["slot", "seen", "publish", "command_slot"],

@@ -3,8 +3,7 @@
 //!
 //! A loop counts once for each look at its condition, the last one included. Every loop of `shaders/` counts, though a
 //! compiler unrolls some of them: which ones depends on the driver's estimate of their cost. A loop that a campaign may
-//! leave out counts where it is there. `tests/probes/iterations.rs` counts on the device and holds these numbers
-//! against it.
+//! leave out counts where it is there.
 
 use super::GpuError;
 use super::adapter::AdapterKind;
