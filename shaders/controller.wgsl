@@ -17,34 +17,34 @@ struct ChannelGains {
 // choice.
 fn injection(row: u32) -> vec4<f32> {
     if PLANT == THRUST {
-        return select(setting.gains[0].injection[row], setting.gains[KINDS - 1u].injection[row], is_attitude());
+        return select(uniforms.gains[0].injection[row], uniforms.gains[KINDS - 1u].injection[row], is_attitude());
     }
-    return setting.gains[0].injection[row];
+    return uniforms.gains[0].injection[row];
 }
 
 fn feedback_gains(k: u32) -> vec4<f32> {
     if PLANT == THRUST {
-        return select(setting.gains[0].feedback[k], setting.gains[KINDS - 1u].feedback[k], is_attitude());
+        return select(uniforms.gains[0].feedback[k], uniforms.gains[KINDS - 1u].feedback[k], is_attitude());
     }
-    return setting.gains[0].feedback[k];
+    return uniforms.gains[0].feedback[k];
 }
 
 fn smoothing() -> vec4<f32> {
     if PLANT == THRUST {
-        return select(setting.gains[0].smoothing, setting.gains[KINDS - 1u].smoothing, is_attitude());
+        return select(uniforms.gains[0].smoothing, uniforms.gains[KINDS - 1u].smoothing, is_attitude());
     }
-    return setting.gains[0].smoothing;
+    return uniforms.gains[0].smoothing;
 }
 
 fn sensor_fault_input() -> vec4<f32> {
     if PLANT == THRUST {
         return select(
-            setting.gains[0].sensor_fault_input,
-            setting.gains[KINDS - 1u].sensor_fault_input,
+            uniforms.gains[0].sensor_fault_input,
+            uniforms.gains[KINDS - 1u].sensor_fault_input,
             is_attitude(),
         );
     }
-    return setting.gains[0].sensor_fault_input;
+    return uniforms.gains[0].sensor_fault_input;
 }
 
 fn is_attitude() -> bool {
@@ -74,7 +74,7 @@ fn feedback(stage: u32) -> f32 {
 //
 // `told` is the feedback that the observer is told was commanded.
 // `off` is by how much x and x' are measured too large, beside f2.
-fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec2<f32>, told: f32) {
+fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec2<f32>, applied_feedback: f32) {
     let b = sensor_fault_input();
     let s = smoothing();
     let integral = stepped_at(stage, 0u);
@@ -108,7 +108,7 @@ fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec
     if FTC {
         let f1 = stepped_at(stage, OBSERVER + 3u);
         let f1_before = stepped_at(stage, OBSERVER + 4u);
-        row = injected(2u, innovation, f1) + told;
+        row = injected(2u, innovation, f1) + applied_feedback;
         stepped_take(stage, OBSERVER + 2u, row);
         row = injected(3u, innovation, fma(f1, s.x, f1_before * s.y));
         stepped_take(stage, OBSERVER + 3u, row);
@@ -121,7 +121,7 @@ fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec
         row = injected(6u, innovation, (f2 - f2_before) * s.z);
         stepped_take(stage, OBSERVER + 6u, row);
     } else {
-        row = injected(2u, innovation, told);
+        row = injected(2u, innovation, applied_feedback);
         stepped_take(stage, OBSERVER + 2u, row);
     }
 }

@@ -26,8 +26,8 @@ var<private> actuator: Actuator;
 var<private> pasts: array<Past, max(N_COMMAND_RINGS + N_SENSOR_RINGS, 1u)>;
 
 // The command that acts on the channel.
-fn actuator_command(wanted: f32) -> f32 {
-    return clamp(fma(wanted, actuator.gain, actuator.bias), actuator.low, actuator.high);
+fn actuator_command(sent: f32) -> f32 {
+    return clamp(fma(sent, actuator.gain, actuator.bias), actuator.low, actuator.high);
 }
 
 // Finds out whether the past is played in a step, and what it is at the step's start.

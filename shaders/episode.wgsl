@@ -23,7 +23,7 @@ struct Span {
     output_first: u32,
 }
 
-@group(0) @binding(0) var<uniform> setting: Uniforms;
+@group(0) @binding(0) var<uniform> uniforms: Uniforms;
 @group(0) @binding(1) var<uniform> span: Span;
 // What was drawn, `[block of episodes][word][channel][agent][episode]`; all controllers read the same.
 @group(0) @binding(2) var<storage, read> draws: array<u32>;
@@ -66,7 +66,7 @@ fn identify(local: u32, workgroup: u32) {
     own.channel = local / (LANES * TEAM);
     own.first_drawn = workgroup * (DRAWN_WORDS * WORKGROUP) + local;
     own.first_stored = workgroup * (STORED_WORDS * WORKGROUP) + local;
-    own.limits = setting.limits[own.channel].xy;
+    own.limits = uniforms.limits[own.channel].xy;
     own.plant = channel_plant();
     own.inverse_inertia = drawn_number(INVERSE_INERTIA);
     own.kappa = drawn_number(KAPPA);
@@ -114,7 +114,7 @@ fn resume() {
         published[command_slot(own.agent)] = last_command;
         workgroupBarrier();
     }
-    group_hold(span.first);
+    team_state_hold(span.first);
 }
 
 // Leaves the state for the next span.
@@ -197,7 +197,7 @@ fn advance(
 ) {
     identify(local, workgroup.x);
     resume();
-    group_advance();
+    team_state_advance();
     keep();
 }
 
@@ -209,7 +209,7 @@ fn show(
 ) {
     identify(local, workgroup.x);
     resume();
-    let shown = group_show();
+    let shown = team_state_show();
     let first = span.output_first + workgroup.x * (SHOWN * WORKGROUP) + local;
     for (var k = 0u; k < SHOWN; k++) {
         output[first + k * WORKGROUP] = bitcast<u32>(shown[k]);

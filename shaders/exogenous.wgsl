@@ -205,23 +205,23 @@ fn carry_command(step: u32, moment: u32) {
     let recalled = select(moment, START, sampled);
     // What is sent at first arrives, blocked or not: before it there is nothing.
     let first = step == 0u && moment == START;
-    var wanted = vec2(1.0, 0.0);
+    var sent = vec2(1.0, 0.0);
     var other = vec2(0.0);
     if held {
-        wanted = vec2(0.0);
+        sent = vec2(0.0);
         other = vec2(last_sent, 0.0);
     }
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
         other = delay_line_recall(k, recalled, other);
-        wanted = delay_line_or_past(k, wanted, vec2(0.0));
+        sent = delay_line_or_past(k, sent, vec2(0.0));
     }
     if N_COMMAND_HOLDS > 0u && !first {
         other.x = lane_select_le(0.5, blocked, last_arrived, other.x);
-        wanted.x = lane_select_le(0.5, blocked, 0.0, wanted.x);
+        sent.x = lane_select_le(0.5, blocked, 0.0, sent.x);
     }
     let gain = actuator.gain;
     actuator.bias = fma(other.x, gain, actuator.bias);
-    actuator.gain = gain * wanted.x;
+    actuator.gain = gain * sent.x;
 }
 
 // Keeps the acting command near the one at the start of the last step; at first, there is none.
@@ -238,9 +238,9 @@ fn limit_rate(step: u32, moment: u32) {
 }
 
 // Takes in what was wanted at the start of step number `step`: what of it was sent, and what arrived.
-fn remember_command(step: u32, wanted: f32) {
+fn remember_command(step: u32, sent: f32) {
     if exogenous_inputs_ticks(step) {
-        last_sent = wanted;
+        last_sent = sent;
     }
     var carried = vec2(last_sent, 0.0);
     for (var k = 0u; k < N_COMMAND_RINGS; k++) {
@@ -262,10 +262,10 @@ fn measure(moment: u32, motion: vec2<f32>) -> vec2<f32> {
 }
 
 // Takes in what was wanted and what was at the start of a step.
-fn exogenous_inputs_remember(step: u32, wanted: f32, motion: vec2<f32>) {
+fn exogenous_inputs_remember(step: u32, sent: f32, motion: vec2<f32>) {
     last_measured = measure(START, motion);
-    last_command = actuator_command(wanted);
-    remember_command(step, wanted);
+    last_command = actuator_command(sent);
+    remember_command(step, sent);
     var seen = vec2(fma(motion.x, scale, motion.x), fma(motion.y, scale, motion.y));
     for (var k = 0u; k < N_SENSOR_RINGS; k++) {
         let ring = N_COMMAND_RINGS + k;

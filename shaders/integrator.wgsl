@@ -25,7 +25,7 @@ fn stepped_at(stage: u32, k: u32) -> f32 {
 
 // Takes in the slope of state `k` at a stage; the last stage ends the step.
 fn stepped_take(stage: u32, k: u32, slope: f32) {
-    let h = setting.h;
+    let h = uniforms.h;
     let ahead = select(h.whole, h.half, stage < 2u);
     switch stage {
         case 0u: {

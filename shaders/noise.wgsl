@@ -8,13 +8,13 @@ fn normal_pair(word: u32, turn: u32) -> vec2<f32> {
 }
 
 fn own_member() -> u32 {
-    return own.agent * MEMBERS_PER_AGENT + setting.first_channel + own.channel;
+    return own.agent * MEMBERS_PER_AGENT + uniforms.first_channel + own.channel;
 }
 
 // Draws the four samples that block number `index` of a noise holds.
 fn noise_draw(k: u32, index: u32) {
     let address = Address(drawn(EPISODE), STREAM_NOISE, NOISE_ENTRIES[k], own_member(), index);
-    let words = address_words(address, setting.seed);
+    let words = address_words(address, uniforms.seed);
     let first = normal_pair(words.x, words.y);
     let second = normal_pair(words.z, words.w);
     store_number(SAMPLES + 4u * k, first.x);
@@ -38,7 +38,7 @@ fn turbulence_force(k: u32) -> f32 {
 // Moves turbulence `k` from a step to the next.
 fn turbulence_advance(k: u32, step: u32) {
     let address = Address(drawn(EPISODE), STREAM_TURBULENCE, TURBULENCE_ENTRIES[k], own_member(), step);
-    let words = address_words(address, setting.seed);
+    let words = address_words(address, uniforms.seed);
     let pair = normal_pair(words.x, words.y);
     let z1 = stored_number(TURBULENCE_STATE + 2u * k);
     let z2 = stored_number(TURBULENCE_STATE + 2u * k + 1u);

@@ -27,9 +27,9 @@ struct Response {
     // x'' - r''.
     error_acceleration: f32,
     // The feedback that was really commanded, after filter and limits, before any fault.
-    told: f32,
+    applied_feedback: f32,
     // The command u of (9) after limits, as it sets out.
-    wanted: f32,
+    sent: f32,
     // The command that acts, after faults.
     command: f32,
     // By how much the limits cut the command.

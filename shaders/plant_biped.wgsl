@@ -21,7 +21,7 @@ struct ChannelPlant {
 }
 
 fn channel_plant() -> ChannelPlant {
-    return ChannelPlant(setting.plant.max_torque[own.channel / 4u][own.channel % 4u]);
+    return ChannelPlant(uniforms.plant.max_torque[own.channel / 4u][own.channel % 4u]);
 }
 
 // The reference of the joint and its rate: (r, r').
@@ -60,8 +60,8 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
     let limit = own.plant.max_torque;
     let limited = clamp(demanded, -limit, limit);
     let excess = demanded - limited;
-    let wanted = select(demanded, limited, CUT);
-    let command = actuator_command(wanted);
+    let sent = select(demanded, limited, CUT);
+    let command = actuator_command(sent);
     // The true robot is the modelled one times a number, so a torque divided by that does the same to the model.
     let force = fma(ground, table[at.place + 2u].z, inputs.force);
     publish(stage, TORQUE, (command + force) * inverse_inertia);
@@ -74,19 +74,19 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
         leg_accelerate(stage);
     }
     workgroupBarrier();
-    var told = inputs.feedback;
+    var applied_feedback = inputs.feedback;
     if CUT {
         // The feedback that would have demanded what the limits left.
-        told = inputs.feedback - plus_product(stage, 0.0, matrix_row(at, 3u), DEMAND);
+        applied_feedback = inputs.feedback - plus_product(stage, 0.0, matrix_row(at, 3u), DEMAND);
     }
     let acceleration = seen(stage, TORQUE, own.channel);
-    return Response(acceleration - at.row.z, told, wanted, command, excess, vec2(0.0));
+    return Response(acceleration - at.row.z, applied_feedback, sent, command, excess, vec2(0.0));
 }
 
 // Replaces the torques that the joints have published by the accelerations of the joints.
 fn leg_accelerate(stage: u32) {
     let acceleration = forward_dynamics(
-        setting.plant.model,
+        uniforms.plant.model,
         leg_seen(stage, POSITION),
         leg_seen(stage, VELOCITY),
         leg_seen(stage, TORQUE),

@@ -35,8 +35,8 @@ fn channel_plant() -> ChannelPlant {
     if PLANT == AXIS || PLANT == TRANSLATION {
         return ChannelPlant(0.0, 0.0, 0.0);
     }
-    let i = (setting.first_channel + own.channel) % 3u;
-    return ChannelPlant(setting.plant.inertia[i], setting.plant.inverse_inertia[i], setting.plant.gyro[i]);
+    let i = (uniforms.first_channel + own.channel) % 3u;
+    return ChannelPlant(uniforms.plant.inertia[i], uniforms.plant.inverse_inertia[i], uniforms.plant.gyro[i]);
 }
 
 // The reference of the channel and its rate: (r, r'). Under thrust, roll and pitch follow the command filter.
@@ -57,7 +57,7 @@ fn publish_channel(stage: u32, inputs: Inputs) {
     if PLANT == THRUST {
         if own.channel < 3u {
             publish(stage, COMMAND_BIAS, actuator.bias);
-            publish(stage, DEMAND, fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w));
+            publish(stage, DEMAND, fma(inputs.feedback, uniforms.plant.mass, inputs.reference.row.w));
             publish(stage, COMMAND_GAIN, actuator.gain);
             publish(stage, COMMAND_LOW, actuator.low);
             publish(stage, COMMAND_HIGH, actuator.high);
@@ -72,10 +72,10 @@ fn publish_channel(stage: u32, inputs: Inputs) {
 
 fn respond(stage: u32, inputs: Inputs) -> Response {
     if PLANT == AXIS {
-        return axis_respond(inputs, setting.plant.gravity);
+        return axis_respond(inputs, uniforms.plant.gravity);
     }
     if PLANT == TRANSLATION {
-        return axis_respond(inputs, select(0.0, setting.plant.gravity, own.channel == HEIGHT));
+        return axis_respond(inputs, select(0.0, uniforms.plant.gravity, own.channel == HEIGHT));
     }
     if PLANT == ATTITUDE {
         return attitude_respond(stage, inputs);
@@ -85,28 +85,28 @@ fn respond(stage: u32, inputs: Inputs) -> Response {
 
 // An axis along which gravity pulls by as much.
 fn axis_respond(inputs: Inputs, gravity: f32) -> Response {
-    let wanted = fma(inputs.feedback, setting.plant.mass, inputs.reference.row.w);
-    let command = actuator_command(wanted);
-    let force = fma(inputs.velocity, -setting.plant.drag, command + inputs.force);
+    let sent = fma(inputs.feedback, uniforms.plant.mass, inputs.reference.row.w);
+    let command = actuator_command(sent);
+    let force = fma(inputs.velocity, -uniforms.plant.drag, command + inputs.force);
     let offset = inputs.reference.row.z + gravity;
     let error_acceleration = fma(force, inverse_inertia, -offset);
-    return Response(error_acceleration, inputs.feedback, wanted, command, 0.0, vec2(0.0));
+    return Response(error_acceleration, inputs.feedback, sent, command, 0.0, vec2(0.0));
 }
 
 // Theta'' under a torque per true inertia, (3); the attitude begins with channel `first` of the group.
 fn attitude_acceleration(stage: u32, first: u32, torque: f32, rate: f32) -> f32 {
     let i = own.channel - first;
-    let net = fma(rate, -setting.plant.angular_drag, torque);
+    let net = fma(rate, -uniforms.plant.angular_drag, torque);
     let gyroscopic = seen(stage, VELOCITY, first + (i + 1u) % 3u) * seen(stage, VELOCITY, first + (i + 2u) % 3u);
     return fma(gyroscopic, -own.plant.gyro, net * inverse_inertia);
 }
 
 fn attitude_respond(stage: u32, inputs: Inputs) -> Response {
-    let wanted = fma(inputs.feedback, own.plant.inertia, inputs.reference.row.w);
-    let command = actuator_command(wanted);
+    let sent = fma(inputs.feedback, own.plant.inertia, inputs.reference.row.w);
+    let command = actuator_command(sent);
     let torque = command + inputs.force;
     let acceleration = attitude_acceleration(stage, 0u, torque, inputs.velocity);
-    return Response(acceleration - inputs.reference.row.z, inputs.feedback, wanted, command, 0.0, vec2(0.0));
+    return Response(acceleration - inputs.reference.row.z, inputs.feedback, sent, command, 0.0, vec2(0.0));
 }
 
 // R(Theta) [0 0 1]', (3).
@@ -137,39 +137,39 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
     let ahead = fma(yaw_sin_cos.y, fx, yaw_sin_cos.x * fy);
     let aside = fma(yaw_sin_cos.y, fy, -(yaw_sin_cos.x * fx));
     let upright = sqrt(fma(ahead, ahead, fz * fz));
-    let roll_wanted = -atan2(aside, upright);
-    let pitch_wanted = atan2(ahead, fz);
-    let tilt = setting.plant.max_tilt;
-    let roll_command = clamp(roll_wanted, -tilt, tilt);
-    let pitch_command = clamp(pitch_wanted, -tilt, tilt);
+    let roll_demanded = -atan2(aside, upright);
+    let pitch_demanded = atan2(ahead, fz);
+    let tilt = uniforms.plant.max_tilt;
+    let roll_command = clamp(roll_demanded, -tilt, tilt);
+    let pitch_command = clamp(pitch_demanded, -tilt, tilt);
 
     if own.channel < 3u {
         // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
-        let thrust_wanted = sqrt(fma(fx, fx, fma(fy, fy, fz * fz)));
-        let thrust = clamp(thrust_wanted, 0.0, setting.plant.max_thrust);
+        let thrust_demanded = sqrt(fma(fx, fx, fma(fy, fy, fz * fz)));
+        let thrust = clamp(thrust_demanded, 0.0, uniforms.plant.max_thrust);
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
-        let excess = vec3(pitch_wanted - pitch_command, roll_wanted - roll_command, thrust_wanted - thrust);
-        let told = fma(thrust, commanded_axis[own.channel], -inputs.reference.row.w) * setting.plant.inverse_mass;
+        let excess = vec3(pitch_demanded - pitch_command, roll_demanded - roll_command, thrust_demanded - thrust);
+        let applied_feedback = fma(thrust, commanded_axis[own.channel], -inputs.reference.row.w) * uniforms.plant.inverse_mass;
 
         // What the faults leave of the thrust acts along the true body axis.
         let unlimited = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
         let applied = clamp(unlimited, seen(stage, COMMAND_LOW, 2u), seen(stage, COMMAND_HIGH, 2u));
         let demand = seen(stage, DEMAND, own.channel);
-        let wanted = select(demand, thrust, own.channel == 2u);
+        let sent = select(demand, thrust, own.channel == 2u);
         let command = fma(demand, actuator.gain, actuator.bias);
         let true_yaw = seen(stage, POSITION, 5u);
         let true_axis = body_axis(seen(stage, POSITION, 3u), seen(stage, POSITION, 4u), sin_cos(true_yaw));
         var net = fma(applied, true_axis[own.channel], inputs.force);
-        net = fma(inputs.velocity, -setting.plant.drag, net);
-        let gravity = select(0.0, setting.plant.gravity, own.channel == 2u);
+        net = fma(inputs.velocity, -uniforms.plant.drag, net);
+        let gravity = select(0.0, uniforms.plant.gravity, own.channel == 2u);
         let offset = inputs.reference.row.z + gravity;
         let error_acceleration = fma(net, inverse_inertia, -offset);
-        return Response(error_acceleration, told, wanted, command, excess[own.channel], vec2(0.0));
+        return Response(error_acceleration, applied_feedback, sent, command, excess[own.channel], vec2(0.0));
     }
 
     let i = own.channel - 3u;
     // Critically damped command filter: q'' = w^2 (command - q) - 2 w q'.
-    let w = setting.plant.filter_rad_s;
+    let w = uniforms.plant.filter_rad_s;
     let roll_rate = seen(stage, REFERENCE_RATE, 3u);
     let pitch_rate = seen(stage, REFERENCE_RATE, 4u);
     let roll_acceleration = (w * (roll_command - roll) - (roll_rate + roll_rate)) * w;
@@ -178,16 +178,16 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
     // Torques: demanded along the filtered attitude, then limited.
     let rates = vec3(roll_rate, pitch_rate, seen(stage, REFERENCE_RATE, 5u));
     let accelerations = vec3(roll_acceleration, pitch_acceleration, inputs.reference.row.z);
-    let limit = setting.plant.max_torque;
+    let limit = uniforms.plant.max_torque;
     let inertia = own.plant.inertia;
     let gyroscopic = rates[(i + 1u) % 3u] * rates[(i + 2u) % 3u] * own.plant.gyro;
-    let non_inertial = fma(gyroscopic, inertia, rates[i] * setting.plant.angular_drag);
+    let non_inertial = fma(gyroscopic, inertia, rates[i] * uniforms.plant.angular_drag);
     let demanded = fma(accelerations[i] + inputs.feedback, inertia, non_inertial);
     let limited = clamp(demanded, -limit, limit);
-    let told = fma(limited - non_inertial, own.plant.inverse_inertia, -accelerations[i]);
+    let applied_feedback = fma(limited - non_inertial, own.plant.inverse_inertia, -accelerations[i]);
     let command = actuator_command(limited);
     let torque = command + inputs.force;
     let angular = attitude_acceleration(stage, 3u, torque, inputs.velocity);
     let extra_rate = vec2(rates[i], accelerations[i]);
-    return Response(angular - accelerations[i], told, limited, command, demanded - limited, extra_rate);
+    return Response(angular - accelerations[i], applied_feedback, limited, command, demanded - limited, extra_rate);
 }

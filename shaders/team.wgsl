@@ -1,5 +1,6 @@
-// Twin of src/model/team.rs: a group of channels of a whole team. An invocation is one channel of one agent in one
-// episode under one controller; a workgroup holds whole teams, whose members see each other through workgroup memory.
+// Twin of src/model/team.rs and src/model/agent.rs: a group of channels of a whole team. An invocation is one channel
+// of one agent in one episode under one controller; a workgroup holds whole teams, whose members see each other through
+// workgroup memory.
 
 // Who this invocation is.
 struct Own {
@@ -135,7 +136,7 @@ fn agent_distortion(stage: u32, at: Reference) -> vec2<f32> {
 // Keeps what the next step needs of the start of this one.
 fn agent_remember(response: Response, at: Reference, step: u32) {
     own.held_feedback = agent_feedback(0u, step);
-    exogenous_inputs_remember(step, response.wanted, agent_motion(0u, at));
+    exogenous_inputs_remember(step, response.sent, agent_motion(0u, at));
     if N_LEAKS > 0u {
         published[command_slot(own.agent)] = last_command;
     }
@@ -143,7 +144,7 @@ fn agent_remember(response: Response, at: Reference, step: u32) {
 
 fn agent_observe(response: Response, off: vec2<f32>, settled: bool, now: u32) {
     let estimates = fault_estimates();
-    let f1 = response.error_acceleration - response.told;
+    let f1 = response.error_acceleration - response.applied_feedback;
     let sample = Sample(
         stepped_start[1],
         response.command,
@@ -157,20 +158,20 @@ fn agent_observe(response: Response, off: vec2<f32>, settled: bool, now: u32) {
 }
 
 // Sets what is held over the coming step, if it differs from the last.
-fn group_begin_step(step: u32) {
+fn team_state_begin_step(step: u32) {
     if RESTLESS || step == own.next_change {
-        group_hold(step);
+        team_state_hold(step);
     }
 }
 
-fn group_hold(step: u32) {
+fn team_state_hold(step: u32) {
     exogenous_inputs_hold(step, team_commands());
     exogenous_inputs_evaluate(step, START);
     metrics_before_fault(own.first_fault, step);
     own.next_change = min(next_change(step), select(NEVER, own.first_fault, own.first_fault > step));
 }
 
-fn group_stage(stage: u32, at: Reference, settled: bool, step: u32) {
+fn team_state_stage(stage: u32, at: Reference, settled: bool, step: u32) {
     let response = agent_respond(stage, at, step);
     let off = agent_distortion(stage, at);
     if stage == 0u {
@@ -179,7 +180,7 @@ fn group_stage(stage: u32, at: Reference, settled: bool, step: u32) {
             agent_remember(response, at, step);
         }
     }
-    step_channel(stage, response.error_acceleration, sensor_fault, off, response.told);
+    step_channel(stage, response.error_acceleration, sensor_fault, off, response.applied_feedback);
     if EXTRA_STATES > 0u {
         stepped_take(stage, EXTRA, response.extra_rate.x);
         stepped_take(stage, EXTRA + 1u, response.extra_rate.y);
@@ -187,7 +188,7 @@ fn group_stage(stage: u32, at: Reference, settled: bool, step: u32) {
 }
 
 // Ends a step for what follows a law of its own.
-fn group_end_step(step: u32) {
+fn team_state_end_step(step: u32) {
     for (var k = 0u; k < N_TURBULENCES; k++) {
         turbulence_advance(k, step);
     }
@@ -200,21 +201,21 @@ fn reference_at(half: u32) -> Reference {
 }
 
 // Integrates from the span's first step up to its end.
-fn group_advance() {
+fn team_state_advance() {
     var end = reference_at(0u);
     for (var step = span.first; step < span.until; step++) {
-        group_begin_step(step);
+        team_state_begin_step(step);
         let start = end;
         let half = 2u * (step - span.first);
         let middle = reference_at(half + 1u);
         end = reference_at(half + 2u);
-        group_stage(0u, start, step >= setting.settle_step, step);
+        team_state_stage(0u, start, step >= uniforms.settle_step, step);
         exogenous_inputs_evaluate(step, MIDDLE);
-        group_stage(1u, middle, false, step);
-        group_stage(2u, middle, false, step);
+        team_state_stage(1u, middle, false, step);
+        team_state_stage(2u, middle, false, step);
         exogenous_inputs_evaluate(step, END);
-        group_stage(3u, end, false, step);
-        group_end_step(step);
+        team_state_stage(3u, end, false, step);
+        team_state_end_step(step);
         if (step + 1u) % FLUSH_STEPS == 0u {
             metrics_flush();
         }
@@ -222,12 +223,12 @@ fn group_advance() {
 }
 
 // What the channel shows at the span's first step.
-fn group_show() -> array<f32, SHOWN> {
+fn team_state_show() -> array<f32, SHOWN> {
     let response = agent_respond(0u, reference_at(0u), span.first);
     let off = agent_distortion(0u, reference_at(0u));
     let position = agent_motion(0u, reference_at(0u)).x;
     let estimates = fault_estimates();
-    let f1 = response.error_acceleration - response.told;
+    let f1 = response.error_acceleration - response.applied_feedback;
     return array(
         position - stepped_start[1],
         position,

@@ -37,11 +37,11 @@ fn intermittent_window_at(k: u32, step: u32) -> vec2<f32> {
     // Before the onset the weight is zero, whatever the slot.
     let since = step - drawn(SWITCHES + 4u * k);
     let together = BURST_TOGETHER[burst];
-    let channel = select(setting.first_channel + own.channel, 0u, together);
+    let channel = select(uniforms.first_channel + own.channel, 0u, together);
     let member = own.agent * MEMBERS_PER_AGENT + channel;
     let slot = since / drawn(BURSTS + 2u * burst);
-    let address = Address(drawn(EPISODE), STREAM_BURST, BURST_ENTRIES[burst], member, slot);
-    let words = address_words(address, setting.seed);
+    let address = Address(drawn(EPISODE), STREAM_INTERMITTENT, BURST_ENTRIES[burst], member, slot);
+    let words = address_words(address, uniforms.seed);
     let hit = select(0.0, 1.0, words.x <= drawn(BURSTS + 2u * burst + 1u));
     let sign = select(1.0, -1.0, (words.y & 1u) == 1u);
     return vec2(hit * window_at(k, step), sign);

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Channels of a UAV, in the order of every table and list.
-const UAV_CHANNELS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+pub(crate) const UAV_CHANNELS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 /// The channel of a UAV's height.
 pub const HEIGHT: usize = 2;
 /// The first attitude channel of a UAV.
@@ -114,7 +114,7 @@ impl Agent {
     }
 
     /// Names of the channels: axes and angles of a UAV, joints of a robot.
-    pub(super) fn channels(&self) -> Vec<Arc<str>> {
+    pub(crate) fn channels(&self) -> Vec<Arc<str>> {
         match self {
             Self::Uav(_) => UAV_CHANNELS.map(Arc::from).to_vec(),
             Self::Biped(biped) => {

@@ -111,17 +111,25 @@ impl Cpu {
 
     /// Flies a range of episodes under every controller, in order; `done` is told of each finished block's episodes.
     #[must_use]
-    pub fn fly(&self, episodes: Range<u32>, done: &(dyn Fn(u32) + Sync)) -> Vec<EpisodeResult> {
+    pub fn simulate(
+        &self,
+        episodes: Range<u32>,
+        done: &(dyn Fn(u32) + Sync),
+    ) -> Vec<EpisodeResult> {
         match &self.0 {
-            Loop::F64(flyer) => flyer.fly::<f64>(episodes, done),
-            Loop::F32(flyer, simd) => match simd {
-                Simd::Scalar => flyer.fly::<f32>(episodes, done),
+            Loop::F64(simulator) => simulator.simulate::<f64>(episodes, done),
+            Loop::F32(simulator, simd) => match simd {
+                Simd::Scalar => simulator.simulate::<f32>(episodes, done),
                 #[cfg(target_arch = "x86_64")]
-                Simd::Avx2 => flyer.fly::<crate::model::lanes::simd::F32x8>(episodes, done),
+                Simd::Avx2 => {
+                    simulator.simulate::<crate::model::lanes::simd::F32x8>(episodes, done)
+                }
                 #[cfg(target_arch = "x86_64")]
-                Simd::Avx512 => flyer.fly::<crate::model::lanes::simd::F32x16>(episodes, done),
+                Simd::Avx512 => {
+                    simulator.simulate::<crate::model::lanes::simd::F32x16>(episodes, done)
+                }
                 #[cfg(not(target_arch = "x86_64"))]
-                _ => flyer.fly::<f32>(episodes, done),
+                _ => simulator.simulate::<f32>(episodes, done),
             },
         }
     }
@@ -135,20 +143,20 @@ impl Cpu {
         every: u32,
     ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
         match &self.0 {
-            Loop::F64(flyer) => flyer.trace::<f64>(episode, controller, every),
-            Loop::F32(flyer, simd) => match simd {
-                Simd::Scalar => flyer.trace::<f32>(episode, controller, every),
-                #[cfg(target_arch = "x86_64")]
-                Simd::Avx2 => {
-                    flyer.trace::<crate::model::lanes::simd::F32x8>(episode, controller, every)
+            Loop::F64(simulator) => simulator.trace::<f64>(episode, controller, every),
+            Loop::F32(simulator, simd) => {
+                match simd {
+                    Simd::Scalar => simulator.trace::<f32>(episode, controller, every),
+                    #[cfg(target_arch = "x86_64")]
+                    Simd::Avx2 => simulator
+                        .trace::<crate::model::lanes::simd::F32x8>(episode, controller, every),
+                    #[cfg(target_arch = "x86_64")]
+                    Simd::Avx512 => simulator
+                        .trace::<crate::model::lanes::simd::F32x16>(episode, controller, every),
+                    #[cfg(not(target_arch = "x86_64"))]
+                    _ => simulator.trace::<f32>(episode, controller, every),
                 }
-                #[cfg(target_arch = "x86_64")]
-                Simd::Avx512 => {
-                    flyer.trace::<crate::model::lanes::simd::F32x16>(episode, controller, every)
-                }
-                #[cfg(not(target_arch = "x86_64"))]
-                _ => flyer.trace::<f32>(episode, controller, every),
-            },
+            }
         }
     }
 }
@@ -163,7 +171,7 @@ impl<R: Real> Flyer<R> {
         }
     }
 
-    fn fly<L: Lane<Real = R>>(
+    fn simulate<L: Lane<Real = R>>(
         &self,
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
@@ -175,7 +183,7 @@ impl<R: Real> Flyer<R> {
                 let count = block.end - block.start;
                 let episodes: Vec<Episode> =
                     block.map(|episode| draw(&self.campaign, episode)).collect();
-                let mut flown: Vec<EpisodeResult> = episodes
+                let mut simulated: Vec<EpisodeResult> = episodes
                     .iter()
                     .map(|episode| EpisodeResult {
                         episode: episode.clone(),
@@ -186,12 +194,12 @@ impl<R: Real> Flyer<R> {
                     let outcomes = episodes
                         .chunks(L::WIDTH)
                         .flat_map(|part| self.model.simulate::<L>(controller, part));
-                    for (flown, outcome) in flown.iter_mut().zip(outcomes) {
-                        flown.outcomes.push(outcome);
+                    for (simulated, outcome) in simulated.iter_mut().zip(outcomes) {
+                        simulated.outcomes.push(outcome);
                     }
                 }
                 done(count);
-                flown
+                simulated
             })
             .collect()
     }

@@ -1,17 +1,13 @@
 //! The parameters of every kind of disturbance and fault, by name: one list serves validation, draws and tables.
 
-use super::check::{Bounds, Parameter, of_agent, required};
-use super::file::{DisturbanceKind, FaultKind, FaultTarget, SamplingScope};
+use super::file::{DisturbanceKind, FaultKind, FaultTarget};
+use super::parameter::{Bounds, Parameter, of_agent, required};
+use super::time::Timing;
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 
 const AMPLITUDE: Parameter = required("amplitude", Bounds::Any);
 const FREQUENCY: Parameter = required("frequency_rad_s", Bounds::NonNegative);
-const PHASE: Parameter = Parameter {
-    name: "phase_rad",
-    default: Some(0.0),
-    bounds: Bounds::Any,
-    per: SamplingScope::Channel,
-};
+const PHASE: Parameter = required("phase_rad", Bounds::Any).or(0.0);
 
 /// Sizes of a jet in m: below a millimetre, squares of far distances would leave the singles.
 const JET_SIZE: Bounds = Bounds::AtLeast(1e-3);
@@ -51,8 +47,8 @@ impl DisturbanceKind {
                     &[
                         required("speed_m_s", Bounds::Any),
                         required("gain_n_s_m", Bounds::NonNegative),
-                        of_agent("onset_s", Bounds::NonNegative),
-                        of_agent("duration_s", Bounds::Positive),
+                        of_agent("onset_s", Bounds::NonNegative).timed(Timing::Onset),
+                        of_agent("duration_s", Bounds::Positive).timed(Timing::Length),
                     ]
                 }
             }
@@ -75,16 +71,7 @@ impl DisturbanceKind {
                     ]
                 }
             }
-            Self::GroundReaction => {
-                const {
-                    &[Parameter {
-                        name: "scale",
-                        default: Some(1.0),
-                        bounds: Bounds::Any,
-                        per: SamplingScope::Channel,
-                    }]
-                }
-            }
+            Self::GroundReaction => const { &[required("scale", Bounds::Any).or(1.0)] },
         }
     }
 }
@@ -98,13 +85,13 @@ const PAYLOAD_MASS: Parameter = of_agent("mass_kg", Bounds::NonNegative);
 const LARGEST_RATE: Parameter = required("rate", Bounds::NonNegative);
 const DRIFT_RATE: Parameter = required("rate", Bounds::Any);
 const STD: Parameter = required("std", Bounds::NonNegative);
-const DELAY: Parameter = of_agent("delay_s", Bounds::Positive);
+const DELAY: Parameter = of_agent("delay_s", Bounds::Positive).timed(Timing::Length);
 /// Length of the recording that is played again.
-const WINDOW: Parameter = of_agent("window_s", Bounds::Positive);
+const WINDOW: Parameter = of_agent("window_s", Bounds::Positive).timed(Timing::Length);
 const PERIOD: Parameter = required("period_s", Bounds::Positive);
 const SMOOTHING: Parameter = required("smoothing", Bounds::AtLeast(1e-6));
 /// Length of the slots of time that are hit or not.
-const SLOT: Parameter = of_agent("burst_s", Bounds::Positive);
+const SLOT: Parameter = of_agent("burst_s", Bounds::Positive).timed(Timing::Length);
 /// Share of the slots that are hit.
 const SHARE: Parameter = of_agent("share", Bounds::Chance);
 const OFFSET_X: Parameter = of_agent("offset_x_m", Bounds::Any);

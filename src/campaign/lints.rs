@@ -1,13 +1,12 @@
 //! What a campaign may do, but its writer has probably not meant: said before the flight, forbidden by nothing.
 
 use super::distribution::Distribution;
+use super::disturbances_and_faults::Fault;
 use super::plan::ALL;
 use super::quantity::RandomQuantity;
-use super::signals::Fault;
 use super::validated::{Campaign, Requirement};
 use crate::reference::{AgentWalk, Reference, WaypointPath};
-use crate::statistics::LEVEL;
-use crate::statistics::{runs_needed, sequential_runs_needed};
+use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
 
 /// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached,
 /// faults that nobody has or that are gone before they have come.

@@ -8,6 +8,7 @@ use super::source::Source;
 use super::validate::validate;
 use super::validated::Campaign;
 use serde::Deserialize;
+use std::fmt::Display;
 use std::path::Path;
 use toml::de::ValueDeserializer;
 
@@ -119,15 +120,31 @@ impl Campaign {
         }
     }
 
-    /// Flies another number of episodes than the file's.
+    /// Refuses the value of a key after the campaign was read, where only gains or a device can tell.
+    pub(crate) fn invalid(
+        &self,
+        key: &str,
+        value: impl Display,
+        limit: &str,
+        remedy: &str,
+    ) -> CampaignError {
+        self.check().invalid(key, value, limit, remedy)
+    }
+
+    /// The same with another number of episodes than the file's.
     ///
     /// # Errors
     /// If the sampling design cannot divide so many into equal replicates.
-    pub fn set_episodes(&mut self, episodes: u32) -> Result<(), CampaignError> {
-        let check = self.check();
-        check.divides(self.sampling, episodes)?;
-        self.episodes = episodes;
-        Ok(())
+    pub fn with_episodes(self, episodes: u32) -> Result<Self, CampaignError> {
+        self.check()
+            .divides("--episodes", self.sampling, episodes)?;
+        Ok(self.with(|campaign| campaign.episodes = episodes))
+    }
+
+    /// The same with another seed than the file's.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        self.with(|campaign| campaign.seed = seed)
     }
 
     /// The JSON Schema of the campaign file.

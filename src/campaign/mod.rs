@@ -2,32 +2,34 @@
 
 mod check;
 pub mod distribution;
+mod disturbances_and_faults;
 pub mod error;
 pub mod file;
 mod kinds;
 pub mod lints;
 mod load;
 mod overlay;
+mod parameter;
 mod plan;
 mod quantity;
-mod signals;
 mod source;
 mod time;
 mod validate;
 mod validated;
 
-pub use check::Parameter;
 pub use distribution::Distribution;
+pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
 pub use file::{
     CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind, Link,
     ObserverStart, SamplingScope,
 };
 pub use overlay::{Setting, SettingError};
+pub use parameter::Parameter;
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
-pub use signals::{Disturbance, Fault, FaultChannels};
-pub use time::Time;
+pub use time::{Time, Timing};
 pub use validated::{
-    Campaign, Control, FTC, GainSource, Initial, NamedGains, PID, PID_TUNED, Requirement, Verdict,
+    BUILT_IN, Campaign, Control, FTC, GainSource, Initial, NamedGains, PID, PID_TUNED, Requirement,
+    Validated, Verdict,
 };

@@ -16,9 +16,9 @@ use toml::de::{DeArray, DeTable, DeValue};
 /// - `fault.0.magnitude=` removes a key; so does `fault.0=` an entry of a list, and `stop=` a whole table.
 /// - `fault.+={ .. }` appends an entry to a list, and so does the first number that is not taken.
 ///
-/// The key is written as in error messages, `fault[0].magnitude`, or with dots alone. The value is TOML; a word that is
-/// none is a string: `sampling.design=sobol`.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+/// The key is written as in error messages, `fault[0].magnitude`, or with dots alone. The value is TOML; a word or path
+/// that is not TOML is taken as a string: `sampling.design=sobol`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Setting {
     /// The whole of it, as it was written.
@@ -30,9 +30,9 @@ pub struct Setting {
 }
 
 /// A step from a table or list to what is in it.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 struct Step {
-    /// A name, a number, or `+` for the entry behind the last.
+    /// A name, a number, or `+` for the entry after the last.
     name: String,
     /// How many bytes of the setting lead to it, itself included.
     end: usize,
@@ -99,7 +99,7 @@ impl FromStr for Setting {
 fn steps(key: &str) -> Result<Vec<Step>, SettingError> {
     let wrong = || {
         SettingError::new(
-            format!("{key:?} is no key"),
+            format!("{key:?} is not a key"),
             "write names and numbers with dots between, such as fault.0.magnitude; numbers count from 0, + appends",
         )
     };
@@ -136,10 +136,19 @@ fn is_entry(name: &str) -> bool {
 /// Whether a text is a word or path that nobody takes for a number, so that its quotes may be left out.
 fn is_word(text: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./".contains(c);
-    text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain)
+    let is_path = ["/", "./", "../"]
+        .iter()
+        .any(|begin| text.starts_with(begin));
+    let begins = is_path || text.starts_with(|c: char| c.is_ascii_alphabetic());
+    begins && text.chars().all(plain)
 }
 
 impl Setting {
+    /// The setting as it was written.
+    pub(super) fn written(&self) -> &str {
+        &self.written
+    }
+
     /// The value; none removes the key.
     fn value(&self) -> Result<Option<DeValue<'_>>, SettingError> {
         let text = self.written[self.value..].trim();
@@ -148,8 +157,8 @@ impl Setting {
             Ok(value) => Ok(Some(value.into_inner())),
             Err(_) if is_word(text) => Ok(Some(DeValue::String(Cow::Borrowed(text)))),
             Err(error) => Err(SettingError::new(
-                format!("{text:?} is no TOML value ({})", error.message()),
-                "write a number, true, [a, list], { a = \"table\" } or \"text\" in double quotes, the whole in single quotes for the shell",
+                format!("{text:?} is not a TOML value ({})", error.message()),
+                "write a number, true, [1, 2], [\"a\", \"b\"], { a = \"table\" } or \"text\" in double quotes; put the whole setting in single quotes for the shell",
             )),
         }
     }
@@ -160,17 +169,26 @@ impl Setting {
         &self.written[..end]
     }
 
-    /// What becomes of the value behind `k` steps of the key, or of none there; a new value is said to stand at
-    /// `place`.
+    /// Lays this setting over a file's root; what is new gets the position `place`.
     pub(super) fn laid<'a>(
+        &'a self,
+        root: Spanned<DeValue<'a>>,
+        place: &Range<usize>,
+    ) -> Result<Option<Spanned<DeValue<'a>>>, SettingError> {
+        let value = self.value()?.map(|value| placed(value, place));
+        self.laid_at(0, Some(root), value, place)
+    }
+
+    /// Lays a value over what the first `k` steps of the key lead to, `None` if there is nothing.
+    fn laid_at<'a>(
         &'a self,
         k: usize,
         here: Option<Spanned<DeValue<'a>>>,
+        value: Option<Spanned<DeValue<'a>>>,
         place: &Range<usize>,
     ) -> Result<Option<Spanned<DeValue<'a>>>, SettingError> {
-        let value = self.value()?;
         let Some(step) = self.steps.get(k) else {
-            return Ok(value.map(|value| placed(value, place)));
+            return Ok(value);
         };
         let name = step.name.as_str();
         let here = here.unwrap_or_else(|| {
@@ -187,7 +205,7 @@ impl Setting {
                 if old.is_none() && value.is_none() {
                     return Err(self.no_key(k, &table));
                 }
-                if let Some(new) = self.laid(k + 1, old, place)? {
+                if let Some(new) = self.laid_at(k + 1, old, value, place)? {
                     let here = Spanned::new(place.clone(), Cow::Borrowed(name));
                     let key = key.filter(|_| k + 1 < self.steps.len()).unwrap_or(here);
                     table.insert(key, new);
@@ -200,13 +218,13 @@ impl Setting {
                     "+" => Some(list.len()),
                     number => number.parse().ok(),
                 };
-                // The entry behind the last is there to be made, not to be removed.
+                // The entry after the last is there to be made, not to be removed.
                 let entries = list.len() + usize::from(value.is_some());
                 let Some(index) = index.filter(|&index| index < entries) else {
                     return Err(self.no_entry(k, list.len()));
                 };
                 let old = (index < list.len()).then(|| list.remove(index));
-                if let Some(new) = self.laid(k + 1, old, place)? {
+                if let Some(new) = self.laid_at(k + 1, old, value, place)? {
                     list.insert(index, new);
                 }
                 DeValue::Array(list.into_iter().collect())

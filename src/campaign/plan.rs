@@ -18,7 +18,7 @@ pub struct Stratum {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StratumFaults {
     /// Every fault with its own probability.
-    RandomQuantity,
+    ByProbability,
     /// Every agent has these (by index) and no other.
     Certain(Vec<usize>),
 }

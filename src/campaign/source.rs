@@ -3,7 +3,7 @@
 use super::error::{CampaignError, syntax};
 use super::overlay::{Setting, SettingError};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -26,12 +26,17 @@ impl<'a> Source<'a> {
         let parsed = DeTable::parse(self.text).map_err(|error| self.syntax(error))?;
         let mut root = Spanned::new(parsed.span(), DeValue::Table(parsed.into_inner()));
         for (setting, place) in self.settings() {
-            let laid = setting.laid(0, Some(root), &place);
+            let laid = setting.laid(root, &place);
             let laid = laid.map_err(|error| self.refused(setting, error))?;
             // A key has at least one step, so that the root is never removed itself.
             root = laid.unwrap_or_else(|| Spanned::new(place, DeValue::Table(DeTable::new())));
         }
         Ok(root)
+    }
+
+    /// The path of a file that is named relative to the campaign's folder.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
     }
 
     fn refused(&self, setting: &Setting, error: SettingError) -> CampaignError {
@@ -47,7 +52,7 @@ impl<'a> Source<'a> {
         let mut end = self.text.len();
         self.overlay.iter().map(move |setting| {
             let start = end + 1;
-            end = start + setting.to_string().len();
+            end = start + setting.written().len();
             (setting, start..end)
         })
     }

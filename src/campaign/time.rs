@@ -13,6 +13,17 @@ pub struct Time {
     pub settle_step: u32,
 }
 
+/// What steps make of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    /// Nothing: it is no time, or one that need not be whole steps.
+    AsDrawn,
+    /// A time at which something begins: that of a step.
+    Onset,
+    /// How long something lasts or lags: whole steps, at least one.
+    Length,
+}
+
 impl Time {
     /// The step at which a fault of this onset begins; t = k dt is never accumulated, and a hair below a step belongs
     /// to it.
@@ -36,5 +47,15 @@ impl Time {
     #[must_use]
     pub fn whole_steps(&self, length_s: f64) -> f64 {
         (length_s / self.step_s).round().max(1.0)
+    }
+
+    /// A value as it acts.
+    #[must_use]
+    pub fn applied(&self, timing: Timing, value: f64) -> f64 {
+        match timing {
+            Timing::AsDrawn => value,
+            Timing::Onset => f64::from(self.onset_step(value)) * self.step_s,
+            Timing::Length => self.whole_steps(value) * self.step_s,
+        }
     }
 }

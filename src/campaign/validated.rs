@@ -1,14 +1,15 @@
 //! A campaign as the rest of the program sees it: checked and complete.
 
+use super::disturbances_and_faults::{Disturbance, Fault};
 use super::file::{CouplingCoordinates, DisturbanceKind, IntegralKind, ObserverStart};
 use super::overlay::Setting;
 use super::plan::{Sampling, Stop, Strata};
 use super::quantity::RandomQuantity;
-use super::signals::{Disturbance, Fault};
 use super::time::Time;
 use crate::agent::{ActuationKind, Agent, ChannelGroup};
 use crate::reference::Reference;
 use crate::synthesis::ChannelDesign;
+use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,14 +20,44 @@ pub const PID: &str = "pid";
 /// Name of the PID whose observer distrusts the faulty velocity channel.
 pub const PID_TUNED: &str = "pid-tuned";
 
-/// A validated campaign.
+/// The controllers that need no file.
+pub const BUILT_IN: [&str; 3] = [FTC, PID, PID_TUNED];
+
+/// A validated campaign. Its parts are there to be read; what changes one of them checks it ([`Campaign::with_seed`],
+/// [`Campaign::with_episodes`], or settings laid over the file).
 #[derive(Debug, Clone)]
-pub struct Campaign {
+pub struct Campaign(Arc<Validated>);
+
+impl Deref for Campaign {
+    type Target = Validated;
+
+    fn deref(&self) -> &Validated {
+        &self.0
+    }
+}
+
+impl Campaign {
+    pub(super) fn new(validated: Validated) -> Self {
+        Self(Arc::new(validated))
+    }
+
+    /// The same with parts changed by somebody who knows that they fit each other: nothing is checked.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut Validated)) -> Self {
+        change(Arc::make_mut(&mut self.0));
+        self
+    }
+}
+
+/// The parts of a [`Campaign`].
+#[derive(Debug, Clone)]
+pub struct Validated {
     /// The file, as it was named on the command line.
     pub path: PathBuf,
     /// The file's text.
     pub text: String,
-    /// What was laid over it.
+    /// The settings laid over it with `--set`, in their order.
     pub overlay: Vec<Setting>,
     /// Name.
     pub name: String,
@@ -76,7 +107,7 @@ pub struct Campaign {
     pub requirements: Vec<Requirement>,
 }
 
-impl Campaign {
+impl Validated {
     /// Names of the channels of one agent, in the order of every table and list.
     #[must_use]
     pub fn channels(&self) -> &[Arc<str>] {

@@ -73,7 +73,7 @@ pub(crate) enum Command {
         /// Output directory of the run
         run: PathBuf,
     },
-    /// Draw the paper's figures again and hold its claims against what is measured here
+    /// Draw the paper's figures again and compare its claims with measurements
     #[command(after_help = examples(&[
         "urts-mc paper --out reports/paper",
     ]))]
@@ -85,7 +85,7 @@ pub(crate) enum Command {
         #[arg(long)]
         overwrite: bool,
     },
-    /// Tell how many episodes a claim about a failure rate needs
+    /// Show how many episodes a claim about a failure rate needs
     #[command(after_help = examples(&[
         "urts-mc plan --failure-rate 0.01",
         "urts-mc plan --failure-rate 0.001 --confidence 0.99 --failures 10",
@@ -137,7 +137,7 @@ pub(crate) struct RunArguments {
     /// and the CPU otherwise
     #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
     pub(crate) backend: BackendChoice,
-    /// The GPU whose name contains this; the only way to a software one
+    /// Use the GPU whose name contains this, the only way to a software one
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
     /// Number format of the episode loop; f64 is the reference,
@@ -273,7 +273,7 @@ pub(crate) struct SynthesizeArguments {
         conflicts_with = "preset"
     )]
     pub(crate) set: Vec<Setting>,
-    /// Print as JSON, in the format of gains.json
+    /// Print as JSON; for a campaign in the format of gains.json
     #[arg(long)]
     pub(crate) json: bool,
 }

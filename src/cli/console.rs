@@ -1,4 +1,4 @@
-//! What goes to standard output and to standard error: with colours on a terminal, without where it is none or
+//! What goes to standard output and to standard error: with colours on a terminal, without them elsewhere or if
 //! `NO_COLOR` is set.
 
 use super::exit::{Code, Failure};
@@ -36,5 +36,5 @@ pub(super) fn print_note(note: &str) {
 pub(crate) fn print_error(failure: &Failure) {
     let mut stream = AutoStream::auto(stderr()).lock();
     // There is no other place to say that nothing can be said.
-    let _ = writeln!(stream, "{BAD}error:{BAD:#} {:#}", failure.error);
+    let _ = writeln!(stream, "{BAD}error:{BAD:#} {}", failure.message);
 }

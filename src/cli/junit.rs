@@ -24,7 +24,7 @@ impl JunitFile {
         if !self.0.has_place() {
             return Ok(());
         }
-        self.write_text(&junit_of_error(campaign, failure.error.to_string())?)
+        self.write_text(&junit_of_error(campaign, failure.message.clone())?)
     }
 
     fn write_text(&self, text: &str) -> Result<(), Failure> {

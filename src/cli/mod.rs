@@ -17,6 +17,7 @@ use arguments::{
 use completions::completions;
 use console::{print, print_json, print_note};
 use exit::{Code, Failure};
+use junit::JunitFile;
 use progress::ProgressLine;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,8 +28,7 @@ use urts_mc::campaign::lints::cautions;
 use urts_mc::controllers::GainSet;
 use urts_mc::report::paper::{claim_dir, paper};
 use urts_mc::report::problems::{shortcoming, unmet};
-use urts_mc::report::terminal;
-use urts_mc::report::{report, trace};
+use urts_mc::report::{report, terminal, trace};
 use urts_mc::run::directory::{OutputDir, OutputFile};
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
@@ -87,44 +87,38 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
 
 impl Overrides {
     fn load(&self) -> Result<Campaign, Failure> {
-        let mut campaign = Campaign::load_with(&self.campaign, &self.set)?;
-        if let Some(episodes) = self.episodes {
-            campaign.set_episodes(episodes)?;
-        }
-        campaign.seed = self.seed.unwrap_or(campaign.seed);
-        Ok(campaign)
+        let campaign = Campaign::load_with(&self.campaign, &self.set)?;
+        let seed = self.seed.unwrap_or(campaign.seed);
+        let episodes = self.episodes.unwrap_or(campaign.episodes);
+        Ok(campaign.with_seed(seed).with_episodes(episodes)?)
     }
 }
 
 fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
-    let campaign = arguments.overrides.load();
-    let of_campaign = || Some(Path::new("reports").join(&campaign.as_ref().ok()?.name));
-    let out = arguments.out.clone().or_else(of_campaign);
-    // Before anything else that may go wrong: what an earlier run left must not tell of this one.
-    let report = arguments.junit_file(out.as_deref())?;
-    let file = &arguments.overrides.campaign;
-    let name = match &campaign {
-        Ok(campaign) => campaign.name.clone(),
-        Err(_) => file.file_stem().unwrap_or_default().display().to_string(),
+    // A stale JUnit file is removed before anything can fail.
+    let campaign = match arguments.overrides.load() {
+        Ok(campaign) => campaign,
+        Err(failure) => {
+            let report = arguments.junit_file(arguments.out.as_deref())?;
+            let file = &arguments.overrides.campaign;
+            let name = file.file_stem().unwrap_or_default().display().to_string();
+            return Err(reported(report, &name, failure));
+        }
     };
-    let flown = campaign.and_then(|campaign| {
-        // A campaign that is read has a directory.
-        let out = out.unwrap_or_default();
-        let findings = arguments.fly(&campaign, &out)?;
-        Ok((campaign, findings, out))
-    });
-    let reported = match (&report, &flown) {
-        (None, _) => Ok(()),
-        (Some(report), Ok((_, findings, out))) => report.write(&findings.manifest, out),
-        (Some(report), Err(failure)) => report.write_error(&name, failure),
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| Path::new("reports").join(&campaign.name));
+    let report = arguments.junit_file(Some(&out))?;
+    let findings = match arguments.simulate(&campaign, &out) {
+        Ok(findings) => findings,
+        Err(failure) => return Err(reported(report, &campaign.name, failure)),
     };
-    let (campaign, findings, out) = flown?;
+    let written = report.map_or(Ok(()), |report| report.write(&findings.manifest, &out));
     if arguments.json {
         print_json(&terminal::findings_json(&findings))?;
     } else if !arguments.quiet {
         print(&terminal::findings(&campaign, &findings, &out))?;
     }
-    reported?;
+    written?;
     if let Some(error) = shortcoming(&findings.manifest, &out) {
         return Err(Failure::new(Code::Other, error));
     }
@@ -134,9 +128,17 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     }
 }
 
+/// A failure of a run, after the JUnit file tells of it; that the file cannot be written is the lesser of two failures.
+fn reported(report: Option<JunitFile>, name: &str, failure: Failure) -> Failure {
+    if let Some(report) = report {
+        report.write_error(name, &failure).ok();
+    }
+    failure
+}
+
 impl RunArguments {
-    /// Flies a campaign into a directory.
-    fn fly(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
+    /// Simulates a campaign into a directory and writes its report.
+    fn simulate(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
         let options = self.options()?;
         let out = OutputDir::claim(out, campaign, self.overwrite)?;
         let extras = Extras {
@@ -277,8 +279,7 @@ fn synthesize_preset(arguments: &SynthesizeArguments) -> Result<Code, Failure> {
     let shown = ProgressLine::of_work("synthesizing gains", false);
     let mut done = Vec::new();
     for (role, design) in preset.map(Preset::designs).unwrap_or_default() {
-        let synthesis =
-            synthesize(&design).map_err(|error| Failure::from(error).coded(Code::Synthesis))?;
+        let synthesis = synthesize(&design)?;
         done.push((role.name(), synthesis));
     }
     drop(shown);

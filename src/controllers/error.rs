@@ -1,11 +1,11 @@
-//! Why there are no gains to fly.
+//! Why there are no gains.
 
 use crate::campaign::CampaignError;
 use crate::synthesis::SynthesisError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why there are no gains to fly.
+/// Why there are no gains.
 #[derive(Debug, Error)]
 pub enum GainsError {
     /// The synthesis failed.

@@ -2,8 +2,7 @@
 
 use super::error::GainsError;
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
-use crate::agent::ChannelGroup;
-use crate::agent::ChannelRole;
+use crate::agent::{ChannelGroup, ChannelRole};
 use crate::campaign::Campaign;
 use crate::synthesis::{ChannelDesign, ControllerGains, SynthesisError, verify};
 use serde::{Deserialize, Serialize};

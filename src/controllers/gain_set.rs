@@ -13,7 +13,7 @@ pub struct GainSet {
     pub controllers: Vec<SimulatedController>,
 }
 
-/// A controller ready to fly.
+/// A controller with its gains.
 #[derive(Debug, Clone)]
 pub struct SimulatedController {
     /// Its name in the campaign.

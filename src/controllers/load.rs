@@ -5,7 +5,7 @@ use super::file::{self, GainsFile};
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
 use super::step::check_step;
 use crate::agent::ChannelGroup;
-use crate::campaign::{Campaign, FTC, PID, PID_TUNED};
+use crate::campaign::{BUILT_IN, Campaign, PID, PID_TUNED};
 use crate::synthesis::{ChannelSynthesis, ControllerGains, LoopAnalysis, synthesize};
 use std::path::Path;
 
@@ -16,8 +16,9 @@ impl GainSet {
     /// If a synthesis fails, a file is unreadable or refused, or the step is too long for the gains.
     pub fn synthesize_or_load(campaign: &Campaign) -> Result<Self, GainsError> {
         let source = &campaign.synthesis;
-        let built_in = |name: &String| [FTC, PID, PID_TUNED].contains(&name.as_str());
-        let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(built_in) {
+        let is_built_in = |name: &String| BUILT_IN.contains(&name.as_str());
+        let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(is_built_in)
+        {
             Some(synthesize_groups(campaign)?)
         } else {
             None

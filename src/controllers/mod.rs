@@ -1,4 +1,5 @@
-//! The gains that fly: synthesized, or from a file and verified the same way; and gains.json.
+//! From a campaign to the gains of its controllers: synthesized, or from a file and verified the same way; and
+//! gains.json.
 
 mod error;
 mod file;

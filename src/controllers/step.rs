@@ -24,16 +24,14 @@ pub(super) fn check_step(gains: &GainSet, campaign: &Campaign) -> Result<(), Cam
         .map(|(pole, of)| (longest_stable_step(pole), of, pole))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     match worst {
-        Some((limit_s, of, pole)) if step_s > limit_s => Err(CampaignError::Invalid {
-            path: campaign.path.clone(),
-            key: "time.step_s".into(),
-            value: step_s.to_string(),
-            limit: format!(
+        Some((limit_s, of, pole)) if step_s > limit_s => {
+            let limit = format!(
                 "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {of}",
                 pole.re, pole.im
-            ),
-            remedy: format!("use {:.1e} or less", limit_s / 2.0),
-        }),
+            );
+            let remedy = format!("use {:.1e} or less", limit_s / 2.0);
+            Err(campaign.invalid("time.step_s", step_s, &limit, &remedy))
+        }
         _ => Ok(()),
     }
 }

@@ -5,7 +5,7 @@ pub mod quantities;
 
 use crate::campaign::{
     Campaign, FaultChannels, Parameter, RandomQuantity, Sampling, SamplingScope, Stratum,
-    StratumFaults, Time,
+    StratumFaults, Time, Timing,
 };
 use crate::random::philox::{Address, Stream};
 use crate::random::{MOST_ENTRIES, latin_hypercube, sobol};
@@ -57,67 +57,53 @@ pub struct FaultDraw {
     pub parameters: Vec<Vec<f64>>,
 }
 
+/// The draws of an episode with times as they happen, in whole steps: what tables, rankings and pages show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedEpisode {
+    /// Index of the episode.
+    pub index: u32,
+    /// Draws of each agent.
+    pub agents: Vec<AgentDraw>,
+}
+
 impl Episode {
-    /// The same with each agent's times as they happen.
+    /// The draws as they act.
     #[must_use]
-    pub fn applied(&self, campaign: &Campaign) -> Self {
-        Self {
+    pub fn applied(&self, campaign: &Campaign) -> AppliedEpisode {
+        let agents = self.agents.iter();
+        AppliedEpisode {
             index: self.index,
-            agents: self
-                .agents
-                .iter()
-                .map(|draw| draw.applied(campaign))
-                .collect(),
+            agents: agents.map(|draw| draw.applied(campaign)).collect(),
         }
     }
 }
 
 impl AgentDraw {
-    /// The same with its times as they happen, in whole steps, which is how tables and rankings show them: an onset is
-    /// the time of the step with which something begins, a length is so many steps.
-    #[must_use]
-    pub fn applied(&self, campaign: &Campaign) -> Self {
+    /// The same draw with every time rounded to whole steps, as it takes effect.
+    fn applied(&self, campaign: &Campaign) -> Self {
         let time = campaign.time;
-        let in_steps = |parameters: &'static [Parameter], values: &[Vec<f64>]| {
-            let pairs = parameters.iter().zip(values);
-            pairs
-                .map(|(parameter, values)| {
-                    let applied = |&value: &f64| applied(time, parameter, value);
-                    values.iter().map(applied).collect()
-                })
-                .collect()
+        let round = |parameters: &[Parameter], values: &mut [Vec<f64>]| {
+            for (parameter, values) in parameters.iter().zip(values) {
+                for value in values {
+                    *value = time.applied(parameter.timing, *value);
+                }
+            }
         };
-        let disturbances = campaign.disturbances.iter().zip(&self.disturbances);
-        let faults = campaign.faults.iter().zip(&self.faults);
-        Self {
-            control_delay_s: match &campaign.control.delay_s {
-                Some(_) => time.whole_steps(self.control_delay_s) * time.step_s,
-                None => 0.0,
-            },
-            disturbances: disturbances
-                .map(|(disturbance, values)| in_steps(disturbance.kind.parameters(), values))
-                .collect(),
-            faults: faults
-                .map(|(fault, draw)| FaultDraw {
-                    strikes: draw.strikes.clone(),
-                    onset_s: f64::from(time.onset_step(draw.onset_s)) * time.step_s,
-                    duration_s: time.whole_steps(draw.duration_s) * time.step_s,
-                    // Of less than half a step it is none: all is there at once.
-                    ramp_s: (draw.ramp_s / time.step_s).round() * time.step_s,
-                    parameters: in_steps(fault.kind.parameters(), &draw.parameters),
-                })
-                .collect(),
-            ..self.clone()
+        let mut applied = self.clone();
+        if campaign.control.delay_s.is_some() {
+            applied.control_delay_s = time.applied(Timing::Length, self.control_delay_s);
         }
-    }
-}
-
-/// A parameter's value as it acts: times in whole steps, all else as it was drawn.
-fn applied(time: Time, parameter: &Parameter, value: f64) -> f64 {
-    match parameter.name {
-        "onset_s" => f64::from(time.onset_step(value)) * time.step_s,
-        "delay_s" | "burst_s" | "window_s" | "duration_s" => time.whole_steps(value) * time.step_s,
-        _ => value,
+        for (disturbance, values) in campaign.disturbances.iter().zip(&mut applied.disturbances) {
+            round(disturbance.kind.parameters(), values);
+        }
+        for (fault, draw) in campaign.faults.iter().zip(&mut applied.faults) {
+            draw.onset_s = time.applied(Timing::Onset, draw.onset_s);
+            draw.duration_s = time.applied(Timing::Length, draw.duration_s);
+            // A ramp of less than half a step is none: the fault is complete at once.
+            draw.ramp_s = (draw.ramp_s / time.step_s).round() * time.step_s;
+            round(fault.kind.parameters(), &mut draw.parameters);
+        }
+        applied
     }
 }
 

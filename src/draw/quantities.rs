@@ -1,82 +1,241 @@
-//! What an episode met, one number per quantity of the campaign: what the ranking relates to the outcomes.
-//!
-//! The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean
-//! square over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
-//! Times are those at which things happen, in whole steps, as in the tables.
+//! The quantities that a campaign draws: the one list that tables, rankings, `check` and pages go through.
 
-use super::{AgentDraw, Episode, FaultDraw};
+use super::{AgentDraw, AppliedEpisode};
 use crate::agent::Agent;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, DisturbanceKind};
 use crate::statistics::root_mean_square;
 
-/// A quantity and its size in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
-pub type DrawnQuantity = (String, Option<f64>);
+/// What a quantity belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The agent.
+    Agent,
+    /// What is between measurement and command.
+    Control,
+    /// The start of an episode.
+    Initial,
+    /// A disturbance, by its place in the campaign.
+    Disturbance(usize, DisturbanceKind),
+    /// A fault, by its place in the campaign.
+    Fault(usize),
+}
 
-/// The conditions of an episode, the same quantities in the same order for all episodes of a campaign.
+/// A quantity that is drawn for every agent, or for each of its channels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    /// What it belongs to.
+    pub source: Source,
+    /// Its name there, which is its key in the campaign file.
+    pub name: &'static str,
+    /// Its name in tables: `fault0_onset_s`; a quantity of channels has a column `fault0_magnitude_x` of each.
+    pub key: String,
+    place: Place,
+}
+
+/// Where a draw keeps a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    MassScale,
+    InertiaScale,
+    Kappa,
+    ControlDelay,
+    Error,
+    ErrorRate,
+    ErrorIntegral,
+    Onset,
+    Duration,
+    Ramp,
+    /// A parameter of a disturbance or fault, in the order of its kind.
+    Parameter(usize),
+}
+
+/// All quantities of a campaign, in the order of the tables.
 #[must_use]
-pub fn conditions(campaign: &Campaign, episode: &Episode) -> Vec<DrawnQuantity> {
-    let agents = &episode.applied(campaign).agents;
-    let of_agents = |pick: &dyn Fn(&AgentDraw) -> f64| root_mean_square(agents.iter().map(pick));
-    let of_channels = |pick: &dyn Fn(&AgentDraw) -> &Vec<f64>| {
-        root_mean_square(agents.iter().flat_map(|draw| pick(draw).iter().copied()))
-    };
-    let mut all = vec![("mass_scale".to_string(), of_agents(&|draw| draw.mass_scale))];
+pub fn quantities(campaign: &Campaign) -> Vec<Quantity> {
+    let mut all = vec![Quantity::new(Source::Agent, "mass_scale", Place::MassScale)];
+    let mut add = |source, name, place| all.push(Quantity::new(source, name, place));
     if let Agent::Uav(_) = campaign.agent {
-        let scale = of_agents(&|draw| draw.inertia_scale);
-        all.push(("inertia_scale".to_string(), scale));
+        add(Source::Agent, "inertia_scale", Place::InertiaScale);
     }
-    all.push(("kappa".to_string(), of_agents(&|draw| draw.kappa)));
+    add(Source::Agent, "kappa", Place::Kappa);
     if campaign.control.delay_s.is_some() {
-        let delay = of_agents(&|draw| draw.control_delay_s);
-        all.push(("control_delay_s".to_string(), delay));
+        add(Source::Control, "delay_s", Place::ControlDelay);
     }
-    let mut initial = |name: &str, size: Option<f64>| all.push((format!("initial_{name}"), size));
-    initial("error", of_channels(&|draw| &draw.error));
-    initial("error_rate", of_channels(&|draw| &draw.error_rate));
-    initial("error_integral", of_channels(&|draw| &draw.error_integral));
+    add(Source::Initial, "error", Place::Error);
+    add(Source::Initial, "error_rate", Place::ErrorRate);
+    add(Source::Initial, "error_integral", Place::ErrorIntegral);
     for (index, disturbance) in campaign.disturbances.iter().enumerate() {
+        let source = Source::Disturbance(index, disturbance.kind);
         for (k, parameter) in disturbance.kind.parameters().iter().enumerate() {
-            let values = agents.iter().flat_map(|draw| {
-                let of_channels = draw.disturbances[index][k].iter().enumerate();
-                of_channels
-                    .filter(|(channel, _)| disturbance.kind.acts_on(*channel))
-                    .map(|(_, value)| *value)
-            });
-            all.push((
-                format!("disturbance{index}_{}", parameter.name),
-                root_mean_square(values),
-            ));
+            add(source, parameter.name, Place::Parameter(k));
         }
     }
     for (index, fault) in campaign.faults.iter().enumerate() {
-        let struck = || agents.iter().map(|draw| &draw.faults[index]);
-        let having = struck().filter(|fault| fault.occurs()).count();
-        all.push((format!("fault{index}_agents"), Some(having as f64)));
-        let onsets = struck().filter(|fault| fault.occurs());
-        let first = onsets.map(|fault| fault.onset_s).reduce(f64::min);
-        all.push((format!("fault{index}_onset_s"), first));
-        let mut of_time = |name: &str, pick: fn(&FaultDraw) -> f64| {
-            let lengths = struck().filter(|fault| fault.occurs()).map(pick);
-            all.push((format!("fault{index}_{name}"), root_mean_square(lengths)));
-        };
+        let source = Source::Fault(index);
+        add(source, "onset_s", Place::Onset);
         if fault.duration_s.is_some() {
-            of_time("duration_s", |fault| fault.duration_s);
+            add(source, "duration_s", Place::Duration);
         }
         if fault.ramp_s.is_some() {
-            of_time("ramp_s", |fault| fault.ramp_s);
+            add(source, "ramp_s", Place::Ramp);
         }
         for (k, parameter) in fault.kind.parameters().iter().enumerate() {
-            let values = struck().flat_map(|fault| {
-                let of_channels = fault.parameters[k].iter().zip(&fault.strikes);
-                of_channels
-                    .filter(|(_, strikes)| **strikes)
-                    .map(|(value, _)| *value)
-            });
-            let name = format!("fault{index}_{}", parameter.name);
-            all.push((name, root_mean_square(values)));
+            add(source, parameter.name, Place::Parameter(k));
         }
     }
     all
+}
+
+impl Quantity {
+    fn new(source: Source, name: &'static str, place: Place) -> Self {
+        let key = match source {
+            Source::Agent => name.to_string(),
+            Source::Control => format!("control_{name}"),
+            Source::Initial => format!("initial_{name}"),
+            Source::Disturbance(index, _) => format!("disturbance{index}_{name}"),
+            Source::Fault(index) => format!("fault{index}_{name}"),
+        };
+        Self {
+            source,
+            name,
+            key,
+            place,
+        }
+    }
+
+    /// Whether each channel has a value of its own.
+    #[must_use]
+    pub fn is_of_channels(&self) -> bool {
+        matches!(
+            self.place,
+            Place::Error | Place::ErrorRate | Place::ErrorIntegral | Place::Parameter(_)
+        )
+    }
+
+    /// Whether it is a parameter of a disturbance or fault, rather than when that is there.
+    #[must_use]
+    pub fn is_parameter(&self) -> bool {
+        matches!(self.place, Place::Parameter(_))
+    }
+
+    /// The values of an agent: one of each channel, or one alone.
+    fn values<'a>(&self, draw: &'a AgentDraw) -> &'a [f64] {
+        use std::slice::from_ref;
+        match (self.source, self.place) {
+            (_, Place::MassScale) => from_ref(&draw.mass_scale),
+            (_, Place::InertiaScale) => from_ref(&draw.inertia_scale),
+            (_, Place::Kappa) => from_ref(&draw.kappa),
+            (_, Place::ControlDelay) => from_ref(&draw.control_delay_s),
+            (_, Place::Error) => &draw.error,
+            (_, Place::ErrorRate) => &draw.error_rate,
+            (_, Place::ErrorIntegral) => &draw.error_integral,
+            (Source::Disturbance(index, _), Place::Parameter(k)) => &draw.disturbances[index][k],
+            (Source::Fault(index), Place::Parameter(k)) => &draw.faults[index].parameters[k],
+            (Source::Fault(index), Place::Onset) => from_ref(&draw.faults[index].onset_s),
+            (Source::Fault(index), Place::Duration) => from_ref(&draw.faults[index].duration_s),
+            (Source::Fault(index), Place::Ramp) => from_ref(&draw.faults[index].ramp_s),
+            _ => &[],
+        }
+    }
+
+    /// Whether value `k` means anything: a fault has parameters where it strikes, a disturbance where it acts.
+    fn applies(&self, draw: &AgentDraw, k: usize) -> bool {
+        match self.source {
+            Source::Fault(index) if self.is_parameter() => draw.faults[index].strikes[k],
+            Source::Fault(index) => draw.faults[index].occurs(),
+            Source::Disturbance(_, kind) => kind.acts_on(k),
+            Source::Agent | Source::Control | Source::Initial => true,
+        }
+    }
+
+    /// The values of an agent, NaN where they do not apply: one of each channel, or one alone.
+    pub fn cells<'a>(&'a self, draw: &'a AgentDraw) -> impl Iterator<Item = f64> + 'a {
+        let values = self.values(draw).iter().enumerate();
+        values.map(|(k, &value)| {
+            if self.applies(draw, k) {
+                value
+            } else {
+                f64::NAN
+            }
+        })
+    }
+
+    /// The values of an agent that apply, each with its channel; a quantity of the agent is with the first.
+    pub fn applied<'a>(&'a self, draw: &'a AgentDraw) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let values = self.values(draw).iter().copied().enumerate();
+        values.filter(|&(k, _)| self.applies(draw, k))
+    }
+}
+
+/// What an episode met, in one number: what the ranking relates to the outcomes.
+///
+/// The sample unit is the episode, so a quantity that is drawn for each agent and channel is summed up by its root mean
+/// square over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Condition {
+    /// Its name in tables: that of its quantity, or `fault0_agents`.
+    pub key: String,
+    measure: Measure,
+}
+
+/// How a condition sums up a team.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Measure {
+    /// Root mean square of all values that apply.
+    Size(Quantity),
+    /// The earliest time.
+    Earliest(Quantity),
+    /// How many agents have a fault.
+    Agents(usize),
+}
+
+/// The conditions of a campaign's episodes.
+#[must_use]
+pub fn conditions(campaign: &Campaign) -> Vec<Condition> {
+    let mut all = Vec::new();
+    for quantity in quantities(campaign) {
+        let key = quantity.key.clone();
+        let measure = match (quantity.source, quantity.place) {
+            (Source::Fault(index), Place::Onset) => {
+                all.push(Condition {
+                    key: format!("fault{index}_agents"),
+                    measure: Measure::Agents(index),
+                });
+                Measure::Earliest(quantity)
+            }
+            _ => Measure::Size(quantity),
+        };
+        all.push(Condition { key, measure });
+    }
+    all
+}
+
+impl Condition {
+    /// The condition in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
+    #[must_use]
+    pub fn of(&self, episode: &AppliedEpisode) -> Option<f64> {
+        let agents = episode.agents.iter();
+        match &self.measure {
+            Measure::Agents(index) => {
+                let having = agents.filter(|draw| draw.faults[*index].occurs());
+                Some(having.count() as f64)
+            }
+            Measure::Earliest(quantity) => {
+                let times = agents.flat_map(|draw| quantity.applied(draw));
+                times.map(|(_, time_s)| time_s).reduce(f64::min)
+            }
+            Measure::Size(quantity) => {
+                let values = |draw| quantity.applied(draw).map(|(_, value)| value);
+                let lists = agents.map(|draw| values(draw).collect::<Vec<f64>>());
+                let lists: Vec<Vec<f64>> = lists.filter(|list| !list.is_empty()).collect();
+                // Agents that are alike have the size of one of them, however many there are: the rounding of a longer
+                // sum would make a constant list seem to vary.
+                let alike = lists.windows(2).all(|pair| pair[0] == pair[1]);
+                let counted = if alike { 1 } else { lists.len() };
+                root_mean_square(lists.into_iter().take(counted).flatten())
+            }
+        }
+    }
 }
 
 /// The fault that a condition is about, and the rest of the condition's name.
@@ -92,19 +251,19 @@ pub fn title(campaign: &Campaign, condition: &str) -> String {
     let of_fault = fault_of(condition)
         .and_then(|(index, rest)| Some(format!("{} {rest}", campaign.faults.get(index)?.name)));
     of_fault
-        .or_else(|| of_disturbance(campaign, condition))
+        .or_else(|| disturbance_title(campaign, condition))
         .unwrap_or_else(|| condition.to_string())
 }
 
-fn of_disturbance(campaign: &Campaign, condition: &str) -> Option<String> {
+fn disturbance_title(campaign: &Campaign, condition: &str) -> Option<String> {
     let (index, rest) = condition.strip_prefix("disturbance")?.split_once('_')?;
     let kind = campaign
         .disturbances
         .get(index.parse::<usize>().ok()?)?
         .kind;
-    let of_kind = campaign.disturbances.iter().filter(|own| own.kind == kind);
+    let alike = campaign.disturbances.iter().filter(|own| own.kind == kind);
     // Two of a kind are told apart by their places in the file.
-    let place = match of_kind.count() {
+    let place = match alike.count() {
         1 => String::new(),
         _ => format!(" [{index}]"),
     };

@@ -123,11 +123,11 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             return self.held_feedback;
         }
         // A closure would be compiled without the lanes' instructions.
-        let mut wanted = [L::number(0.0); NC];
+        let mut sent = [L::number(0.0); NC];
         for c in 0..NC {
-            wanted[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
+            sent[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
         }
-        wanted
+        sent
     }
 
     /// The answer of the plant at the state of stage `STAGE` of agent number `own` of its team.
@@ -208,7 +208,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     ) {
         self.held_feedback = self.feedback::<P, 0>(setting, step);
         let motion = self.motion::<P, 0>(&setting.plant, rows);
-        kernels::remember(&mut self.signals, step, &response.wanted, &motion);
+        kernels::remember(&mut self.signals, step, &response.sent, &motion);
     }
 
     #[inline(always)]
@@ -223,7 +223,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         for c in 0..NC {
             let state = self.channels[c].at::<0>();
             let [f1_hat, f2_hat] = fault_estimates(state);
-            let f1 = response.error_acceleration[c] - response.told[c];
+            let f1 = response.error_acceleration[c] - response.applied_feedback[c];
             let sample = Sample {
                 error: state[1],
                 command: response.command[c],

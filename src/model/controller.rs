@@ -113,7 +113,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     channel: &mut Stepped<L, NS>,
     error_acceleration: L,
     measured: &Measured<L>,
-    told: L,
+    applied_feedback: L,
     h: &Step<L::Real>,
 ) {
     if NS == TRUE_STATES {
@@ -157,7 +157,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     channel.take::<STAGE>(OBSERVER + 1, row, h);
     if NS == FTC_STATES {
         let [f1, f1_before] = [state[OBSERVER + 3], state[OBSERVER + 4]];
-        row = injected(&rows[2], &innovation, f1) + told;
+        row = injected(&rows[2], &innovation, f1) + applied_feedback;
         channel.take::<STAGE>(OBSERVER + 2, row, h);
         row = injected(&rows[3], &innovation, f1.mul_add(a, f1_before * b));
         channel.take::<STAGE>(OBSERVER + 3, row, h);
@@ -169,7 +169,7 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
         row = injected(&rows[6], &innovation, (f2 - f2_before) * c);
         channel.take::<STAGE>(OBSERVER + 6, row, h);
     } else {
-        row = injected(&rows[2], &innovation, told);
+        row = injected(&rows[2], &innovation, applied_feedback);
         channel.take::<STAGE>(OBSERVER + 2, row, h);
     }
 }

@@ -134,7 +134,7 @@ impl<R: Real> Model<R> {
         controller: &Controller<R>,
         episodes: &[Episode],
     ) -> Vec<Vec<AgentOutcome>> {
-        self.fly::<L>(controller, episodes, None).0
+        self.run_loop::<L>(controller, episodes, None).0
     }
 
     /// Flies one episode and shows it every `every` steps, from the start to the end.
@@ -145,7 +145,7 @@ impl<R: Real> Model<R> {
         episode: &Episode,
         every: u32,
     ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
-        let (mut outcomes, snapshots) = self.fly::<L>(
+        let (mut outcomes, snapshots) = self.run_loop::<L>(
             controller,
             std::slice::from_ref(episode),
             Some(every.max(1)),
@@ -153,7 +153,7 @@ impl<R: Real> Model<R> {
         (outcomes.pop().unwrap_or_default(), snapshots)
     }
 
-    fn fly<L: Lane<Real = R>>(
+    fn run_loop<L: Lane<Real = R>>(
         &self,
         controller: &Controller<R>,
         episodes: &[Episode],
@@ -175,7 +175,7 @@ impl<R: Real> Model<R> {
             match controller.kind {
                 ControllerKind::Ftc => flight.part::<L, FTC_STATES>(part),
                 ControllerKind::Pid => flight.part::<L, PID_STATES>(part),
-                // Only a reference's controller can be of this kind, so no other precision compiles the loop for it.
+                // `Controller::true_state` exists in double precision only, so no other precision needs this loop.
                 ControllerKind::TrueState => {
                     if R::IS_REFERENCE {
                         flight.part::<L, TRUE_STATES>(part);
@@ -208,7 +208,9 @@ impl<R: Real> EpisodeLoop<'_, R> {
                     self.group::<L, _, 3, NS, 0>(Translation::new(uav), part);
                 }
                 PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
-                _ => self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part),
+                PlantKind::Thrust | PlantKind::Leg => {
+                    self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part)
+                }
             },
             crate::agent::Agent::Biped(biped) => {
                 let (robot, side) = (&biped.robot, first / LEG_JOINTS);

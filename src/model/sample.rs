@@ -1,4 +1,4 @@
-//! What is told of one channel at one instant.
+//! What one channel shows at one instant.
 
 use crate::synthesis::LOOP_STATES;
 
@@ -35,5 +35,5 @@ pub struct ObserverState {
     /// The observer's states `[int e, e, e', F1 (2), F2 (2)]`, zero beyond those that it has.
     pub observer: [f64; LOOP_STATES],
     /// The feedback that the observer is told was commanded.
-    pub told: f64,
+    pub applied_feedback: f64,
 }

@@ -4,10 +4,9 @@ use super::lanes::Real;
 use super::plant::ReferenceRow;
 use super::plant::biped::leg_rows;
 use super::plant::uav::{inertia, non_inertial};
-use crate::agent::ActuationKind;
 use crate::agent::robot::dynamics::{inverse_dynamics, mass_matrix};
 use crate::agent::robot::{JOINTS, LEG_JOINTS, Robot};
-use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
+use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE, Uav};
 use crate::campaign::{Campaign, DisturbanceKind};
 use crate::reference::ReferencePoint;
 use nalgebra::{Cholesky, Matrix6, Vector6};
@@ -152,7 +151,7 @@ fn matrix_rows(matrix: &Matrix6<f64>, row: usize, beside: f64) -> [ReferenceRow<
     [[m(0), m(1), m(2), m(3)], [m(4), m(5), beside, 0.0]]
 }
 
-/// Not a number where the matrix is not positive definite, so that a flight over it counts as diverged.
+/// Not a number where the matrix is not positive definite, so that an episode with it counts as diverged.
 fn inverse(mass: Matrix6<f64>) -> Matrix6<f64> {
     Cholesky::new(mass).map_or(Matrix6::repeat(f64::NAN), |factor| factor.inverse())
 }

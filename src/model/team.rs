@@ -194,7 +194,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
                         off: off[c],
                         integral: setting.measured_integral,
                     },
-                    response.told[c],
+                    response.applied_feedback[c],
                     h,
                 );
             }
@@ -294,7 +294,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
             for c in 0..NC {
                 let state = agent.channels[c].at::<0>();
                 let [f1_hat, f2_hat] = fault_estimates(state);
-                let f1 = response.error_acceleration[c] - response.told[c];
+                let f1 = response.error_acceleration[c] - response.applied_feedback[c];
                 let seen = ChannelSample {
                     r: first_lane(position[c] - state[1]),
                     x: first_lane(position[c]),
@@ -310,7 +310,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
                 let mut held = ObserverState {
                     integral: first_lane(state[0]),
                     observer: [0.0; LOOP_STATES],
-                    told: first_lane(response.told[c]),
+                    applied_feedback: first_lane(response.applied_feedback[c]),
                 };
                 for (held, &state) in held.observer.iter_mut().zip(state.iter().skip(OBSERVER)) {
                     *held = first_lane(state);

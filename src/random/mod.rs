@@ -1,7 +1,7 @@
-//! Designs: how the random numbers of a campaign's episodes lie in the unit cube.
+//! Random numbers by address ([`philox`]), and designs: how the numbers of a campaign's episodes lie in the unit cube.
 //!
 //! Every design is a pure function of (seed, dimension, episode), addressed by the counters of
-//! [`rng`](philox) as the independent numbers are ([`Address::unit`]): nothing is stored
+//! [`philox`] as the independent numbers are ([`Address::unit`]): nothing is stored
 //! and nothing depends on the order of asking. A dimension is one random quantity of an episode, by
 //! any number that the caller gives it; all numbers lie strictly between 0 and 1.
 //!

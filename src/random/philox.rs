@@ -53,7 +53,7 @@ pub enum Stream {
     /// Permutations of episodes in tests.
     Permutation = 7,
     /// Which slots of time a fault hits that is there now and then.
-    IntermittentWindow = 8,
+    Intermittent = 8,
     /// The noise that drives turbulence, step by step.
     Turbulence = 9,
 }

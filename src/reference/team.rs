@@ -4,12 +4,9 @@ use super::path::WaypointPath;
 use super::point::ReferencePoint;
 use super::sinusoid::Sinusoid;
 use super::walk::{self, Walk};
-use crate::agent::FIRST_ATTITUDE;
 use crate::agent::robot::{JOINTS, Robot};
+use crate::agent::{FIRST_ATTITUDE, UAV_CHANNELS};
 use std::sync::Arc;
-
-/// Channels of a UAV.
-const UAV_CHANNELS: usize = 6;
 
 /// The references of a team.
 #[derive(Debug, Clone)]
@@ -54,7 +51,7 @@ impl Reference {
                         ReferencePoint::default()
                     }
                 };
-                (0..UAV_CHANNELS).map(channel).collect()
+                (0..UAV_CHANNELS.len()).map(channel).collect()
             }
             Self::Walk(walks) => {
                 let AgentWalk { walk, start_s } = &walks[agent];

@@ -1,5 +1,5 @@
-//! What became of a run as JUnit XML, for CI systems: a test case for the flight, for the cross-check if there was to
-//! be one, and for each `[[require]]`.
+//! What became of a run as JUnit XML, for CI systems: a test case for the simulation, for the cross-check if there was
+//! to be one, and for each `[[require]]`.
 
 use super::problems::{differing, missing, reason, unchecked};
 use crate::run::manifest::Manifest;

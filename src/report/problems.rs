@@ -5,8 +5,7 @@ use crate::campaign::ALL;
 use crate::results::RequirementResult;
 use crate::run::manifest::Manifest;
 use crate::simulation::cross_check::{ERROR_LIMIT, RMSE_LIMIT};
-use crate::statistics::LEVEL;
-use crate::statistics::{runs_needed, sequential_runs_needed};
+use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
 use crate::util::format::rounded_up;
 use std::path::Path;
 

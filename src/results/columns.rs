@@ -3,14 +3,14 @@
 use super::paired::{Measured, PairedComparison};
 use super::replicates::Replicated;
 use super::screening::Screening;
-use super::summary::MetricQuantiles;
+use super::summary::{MetricQuantiles, RateMethod};
 use super::table::{Row, Table};
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, Interval};
 
 /// The summary as a table. Columns of confidence sequences and of replicates are there where the campaign has them.
 #[must_use]
-pub fn summary_table(campaign: &Campaign, rows: &[MetricQuantiles]) -> Table {
+pub fn summary_table(rows: &[MetricQuantiles]) -> Table {
     let mut table = Table::default();
     for MetricQuantiles {
         failures,
@@ -29,12 +29,16 @@ pub fn summary_table(campaign: &Campaign, rows: &[MetricQuantiles]) -> Table {
             .count(|| "exceeded".into(), failures.exceeded)
             .count(|| "diverged".into(), failures.diverged)
             .real_if("failure_rate", (failures.n > 0).then(|| failures.rate()));
-        interval(&mut row, "failure_rate_wilson", failures.wilson);
-        if campaign.stop.is_some() {
-            interval(&mut row, "failure_rate_sequential", failures.sequential);
-        }
-        if campaign.sampling.replicates().is_some() {
-            interval(&mut row, "failure_rate_replicates", failures.replicates);
+        // Every table has Wilson's columns, and those of the method that holds.
+        for method in [
+            RateMethod::Wilson,
+            RateMethod::Sequential,
+            RateMethod::Replicates,
+        ] {
+            if method == RateMethod::Wilson || method == failures.method {
+                let name = format!("failure_rate_{}", method.name());
+                interval(&mut row, &name, failures.interval_by(method));
+            }
         }
         row.real_if("failure_rate_upper_95", failures.upper_95);
         for (q, value, of_quantile) in quantiles {

@@ -9,6 +9,7 @@
 //! (Hoeffding 1956, Annals of Mathematical Statistics 27:713-721). Intervals and tests that the sampling design does
 //! not allow ([`crate::random::allows`]) are absent; Student's t over the design's replicates takes the place of some.
 
+mod all;
 mod columns;
 mod paired;
 mod replicates;
@@ -24,11 +25,12 @@ mod team;
 mod verdict;
 mod worst_fault;
 
+pub use all::Results;
 pub use columns::{comparison_table, screening_table, summary_table};
 pub use paired::{Measured, PairedComparison, Ratio, compare};
 pub use replicates::{FEWEST_REPLICATES, Replicated};
 pub use requirements::{RequirementResult, requirements};
 pub use screening::{FaultEffect, Screening, screen};
-pub use summary::{FailureRate, MetricQuantiles, summarise};
+pub use summary::{FailureRate, MetricQuantiles, RateMethod, summarise};
 pub use verdict::{how_sure, verdict};
 pub use worst_fault::harm;

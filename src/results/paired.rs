@@ -6,9 +6,8 @@ use super::strata::{Subset, parts, replicates};
 use super::team::Layout;
 use crate::campaign::Campaign;
 use crate::random::{Method, allows};
-use crate::statistics::LEVEL;
 use crate::statistics::{
-    Estimate, Interval, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
+    Estimate, Interval, LEVEL, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
     win_rate,
 };
 use std::sync::Arc;

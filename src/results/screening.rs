@@ -12,8 +12,9 @@ use super::summary::FailureRate;
 use super::team::{Layout, team_rmse};
 use crate::agent::ChannelGroup;
 use crate::campaign::{Campaign, StratumFaults};
-use crate::statistics::LEVEL;
-use crate::statistics::{Estimate, independent_difference, quantile, quantile_interval, wilson};
+use crate::statistics::{
+    Estimate, LEVEL, independent_difference, quantile, quantile_interval, wilson,
+};
 use std::sync::Arc;
 
 /// What the strata with certain faults do to a controller.
@@ -56,7 +57,7 @@ pub fn screen(campaign: &Campaign, scores: &Scores) -> Vec<Screening> {
         .zip(parts.get(1..).unwrap_or_default())
         .filter_map(|(stratum, part)| match &stratum.faults {
             StratumFaults::Certain(faults) => Some((part, faults.is_empty())),
-            StratumFaults::RandomQuantity => None,
+            StratumFaults::ByProbability => None,
         })
         .collect();
     if certain.len() < 2 {

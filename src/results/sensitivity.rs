@@ -8,8 +8,7 @@ use crate::agent::ChannelGroup;
 use crate::campaign::{Campaign, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;
 use crate::random::{Method, allows};
-use crate::statistics::LEVEL;
-use crate::statistics::{Effect, Interval, Outcome, Permutations, Ranked, effects, holm};
+use crate::statistics::{Effect, Interval, LEVEL, Outcome, Permutations, Ranked, effects, holm};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -142,7 +141,7 @@ pub(crate) fn by_chance(
     condition: &str,
     values: &[Option<f64>],
 ) -> Vec<Option<f64>> {
-    let draws = |stratum: &Stratum| stratum.faults == StratumFaults::RandomQuantity;
+    let draws = |stratum: &Stratum| stratum.faults == StratumFaults::ByProbability;
     let strata = &campaign.strata;
     let only_drawn = match fault_of(condition) {
         Some((fault, _)) if campaign.faults[fault].background => false,

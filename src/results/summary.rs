@@ -3,13 +3,12 @@
 use super::replicates::over_replicates;
 use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::team::{Layout, root_mean_square};
+use super::team::Layout;
 use crate::agent::ChannelGroup;
 use crate::campaign::Campaign;
 use crate::random::{Method, allows};
-use crate::statistics::LEVEL;
 use crate::statistics::{
-    Interval, clopper_pearson_upper, quantile, quantile_interval, sequential_interval,
+    Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, rms, sequential_interval,
     sequential_upper, wilson,
 };
 use std::sync::Arc;
@@ -17,8 +16,41 @@ use std::sync::Arc;
 /// The quantiles of the summary.
 const QUANTILES: [f64; 3] = [0.5, 0.95, 0.99];
 
-/// How often a controller failed in a stratum, with the one interval that holds: by the design of the draws and by who
-/// decides on the number of episodes.
+/// How the interval of a failure rate is found. The design of the draws, and who decides on the number of episodes,
+/// leave one way that holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RateMethod {
+    /// Wilson's score interval: of independent draws in a fixed number.
+    Wilson,
+    /// A confidence sequence: of independent draws in a number that `[stop]` decides.
+    Sequential,
+    /// Student's t over the replicates of a sampling design.
+    Replicates,
+}
+
+impl RateMethod {
+    /// The method of a campaign.
+    #[must_use]
+    pub fn of(campaign: &Campaign) -> Self {
+        match (campaign.sampling.replicates(), &campaign.stop) {
+            (Some(_), _) => Self::Replicates,
+            (None, Some(_)) => Self::Sequential,
+            (None, None) => Self::Wilson,
+        }
+    }
+
+    /// The word in the names of columns and keys.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wilson => "wilson",
+            Self::Sequential => "sequential",
+            Self::Replicates => "replicates",
+        }
+    }
+}
+
+/// How often a controller failed in a stratum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailureRate {
     /// Name of the controller.
@@ -31,12 +63,10 @@ pub struct FailureRate {
     pub exceeded: u64,
     /// Episodes that left the numbers.
     pub diverged: u64,
-    /// Wilson interval of the failure rate: of independent draws in a fixed number.
-    pub wilson: Option<Interval>,
-    /// Confidence sequence of the failure rate: of independent draws in a number that `[stop]` decides.
-    pub sequential: Option<Interval>,
-    /// Student's t over the replicates of a sampling design, if there are enough of them.
-    pub replicates: Option<Interval>,
+    /// How its interval is found.
+    pub method: RateMethod,
+    /// Two-sided 95 % interval of the failure rate; absent over too few replicates.
+    pub interval: Option<Interval>,
     /// One-sided 95 % bound of the failure rate, of independent draws: Clopper-Pearson's, or that of the confidence
     /// sequence.
     pub upper_95: Option<f64>,
@@ -55,10 +85,10 @@ impl FailureRate {
         self.failed() as f64 / self.n.max(1) as f64
     }
 
-    /// The two-sided 95 % interval that holds, if one does.
+    /// The interval, if it is found by this method.
     #[must_use]
-    pub fn interval(&self) -> Option<Interval> {
-        self.wilson.or(self.sequential).or(self.replicates)
+    pub fn interval_by(&self, method: RateMethod) -> Option<Interval> {
+        self.interval.filter(|_| self.method == method)
     }
 
     /// Counts the failures of a controller in a part of the episodes.
@@ -76,36 +106,35 @@ impl FailureRate {
         let exceeded = count(&part.episodes, &[Status::Exceeded]);
         let diverged = count(&part.episodes, &[Status::Diverged]);
         let (n, failed) = (part.episodes.len() as u64, exceeded + diverged);
-        let independent = allows(campaign.sampling.design(), Method::FailureRate);
-        let (fixed, stopped) = (
-            independent && campaign.stop.is_none(),
-            independent && campaign.stop.is_some(),
-        );
+        let method = RateMethod::of(campaign);
         let share = |episodes: &Vec<usize>| {
             let failed = count(episodes, &[Status::Exceeded, Status::Diverged]);
             (!episodes.is_empty()).then(|| failed as f64 / episodes.len() as f64)
         };
-        let shares: Option<Vec<f64>> = replicates(campaign, &part.episodes)
-            .iter()
-            .map(share)
-            .collect();
-        let over_replicates = shares.and_then(|shares| over_replicates(&shares));
+        let over_replicates = || {
+            let shares = replicates(campaign, &part.episodes);
+            let shares: Option<Vec<f64>> = shares.iter().map(share).collect();
+            over_replicates(&shares?).map(|found| Interval {
+                lower: found.estimate.interval.lower.max(0.0),
+                upper: found.estimate.interval.upper.min(1.0),
+            })
+        };
         Self {
             controller: campaign.controllers[controller].clone(),
             stratum: part.name.clone(),
             n,
             exceeded,
             diverged,
-            wilson: fixed.then(|| wilson(failed, n, LEVEL)),
-            sequential: stopped.then(|| sequential_interval(failed, n, LEVEL)),
-            replicates: over_replicates.map(|found| Interval {
-                lower: found.estimate.interval.lower.max(0.0),
-                upper: found.estimate.interval.upper.min(1.0),
-            }),
-            upper_95: match (fixed, stopped) {
-                (true, _) => Some(clopper_pearson_upper(failed, n, LEVEL)),
-                (_, true) => Some(sequential_upper(failed, n, LEVEL)),
-                _ => None,
+            method,
+            interval: match method {
+                RateMethod::Wilson => Some(wilson(failed, n, LEVEL)),
+                RateMethod::Sequential => Some(sequential_interval(failed, n, LEVEL)),
+                RateMethod::Replicates => over_replicates(),
+            },
+            upper_95: match method {
+                RateMethod::Wilson => Some(clopper_pearson_upper(failed, n, LEVEL)),
+                RateMethod::Sequential => Some(sequential_upper(failed, n, LEVEL)),
+                RateMethod::Replicates => None,
             },
         }
     }
@@ -141,7 +170,7 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                         let of_team = layout.of(&values[controller], episode);
                         match scores.status[controller][episode] {
                             Status::Diverged => f64::INFINITY,
-                            _ if metric == "rmse" => root_mean_square(of_team),
+                            _ if metric == "rmse" => rms(of_team),
                             _ => of_team.fold(0.0, f64::max),
                         }
                     };

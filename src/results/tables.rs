@@ -2,11 +2,11 @@
 
 use super::scores::{Scores, Status, status};
 use super::table::{Row, Table};
-use crate::agent::{Agent, ChannelGroup};
+use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
 use crate::campaign::{Campaign, Time};
 use crate::draw::AgentDraw;
-use crate::draw::quantities::{DrawnQuantity, conditions};
+use crate::draw::quantities::{Condition, Quantity, Source, conditions, quantities};
 use crate::model::episode::AgentOutcome;
 use crate::model::inputs::later_onsets;
 use crate::model::metric::ChannelOutcome;
@@ -23,6 +23,9 @@ pub struct Tables {
     pub scores: Scores,
     /// Names of the controllers, shared by all rows.
     names: Vec<Arc<str>>,
+    /// What is drawn, and what the ranking reads of it.
+    quantities: Vec<Quantity>,
+    conditions: Vec<Condition>,
 }
 
 impl Tables {
@@ -30,6 +33,7 @@ impl Tables {
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {
         let controllers = campaign.controllers.len();
+        let conditions = conditions(campaign);
         Self {
             episodes: Table::default(),
             channels: Table::default(),
@@ -44,27 +48,29 @@ impl Tables {
                 max_abs: vec![Vec::new(); controllers],
                 failed_step: vec![Vec::new(); controllers],
                 fault_occurs: vec![Vec::new(); campaign.faults.len()],
-                conditions: Vec::new(),
+                conditions: conditions
+                    .iter()
+                    .map(|condition| (condition.key.clone(), Vec::new()))
+                    .collect(),
             },
+            quantities: quantities(campaign),
+            conditions,
         }
     }
 
     /// Adds an episode; episodes are added in order.
-    pub fn add(&mut self, campaign: &Campaign, flown: &EpisodeResult) {
+    pub fn add(&mut self, campaign: &Campaign, simulated: &EpisodeResult) {
         // All rows show the times as they happen.
-        let draws = &flown.episode.applied(campaign).agents;
+        let applied = simulated.episode.applied(campaign);
+        let draws = &applied.agents;
         for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
             occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
         }
-        let conditions = conditions(campaign, &flown.episode);
-        if self.scores.conditions.is_empty() {
-            let named = |(name, _): &DrawnQuantity| (name.clone(), Vec::new());
-            self.scores.conditions = conditions.iter().map(named).collect();
+        for ((_, values), condition) in self.scores.conditions.iter_mut().zip(&self.conditions) {
+            values.push(condition.of(&applied));
         }
-        for ((_, values), (_, value)) in self.scores.conditions.iter_mut().zip(conditions) {
-            values.push(value);
-        }
-        for (controller, (name, outcomes)) in self.names.iter().zip(&flown.outcomes).enumerate() {
+        for (controller, (name, outcomes)) in self.names.iter().zip(&simulated.outcomes).enumerate()
+        {
             let agents: Vec<AgentVerdict<'_>> = outcomes
                 .iter()
                 .zip(draws)
@@ -80,19 +86,20 @@ impl Tables {
                 .extend(outcomes.iter().map(|outcome| outcome.failed_step));
             for ((agent, judged), draw) in (0u64..).zip(&agents).zip(draws) {
                 let key = |row: &mut Row<'_>| {
-                    row.count(|| "episode".into(), u64::from(flown.episode.index))
+                    row.count(|| "episode".into(), u64::from(simulated.episode.index))
                         .name(|| "controller".into(), name.clone())
                         .count(|| "agent".into(), agent);
                 };
                 let mut row = self.episodes.row();
                 key(&mut row);
-                if let Some(stratum) = campaign.strata.of(flown.episode.index) {
+                if let Some(stratum) = campaign.strata.of(simulated.episode.index) {
                     row.name(|| "stratum".into(), stratum.name.clone());
                 }
-                if let Some((replicate, _)) = campaign.sampling.place(flown.episode.index) {
+                if let Some((replicate, _)) = campaign.sampling.place(simulated.episode.index) {
                     row.count(|| "replicate".into(), u64::from(replicate));
                 }
-                judged.write_agent(&mut row, campaign, worst, draw);
+                judged.write_agent(&mut row, campaign, worst);
+                write_draw(&mut row, campaign, &self.quantities, draw);
                 let channels = campaign.channels().iter();
                 for (channel, outcome) in channels.zip(&judged.outcome.channels) {
                     let mut row = self.channels.row();
@@ -124,7 +131,7 @@ impl<'a> AgentVerdict<'a> {
         }
     }
 
-    fn write_agent(&self, row: &mut Row<'_>, campaign: &Campaign, worst: Status, draw: &AgentDraw) {
+    fn write_agent(&self, row: &mut Row<'_>, campaign: &Campaign, worst: Status) {
         let failed_at_s = match (self.status, self.outcome.failed_step) {
             (Status::Ok, _) => None,
             (_, Some(step)) => Some(f64::from(step) * campaign.time.step_s),
@@ -165,7 +172,6 @@ impl<'a> AgentVerdict<'a> {
                         .fold(0.0, f64::max),
                 ),
             );
-        write_draw(row, campaign, draw);
     }
 
     fn write_channel(&self, row: &mut Row<'_>, time: Time, metrics: &ChannelOutcome) {
@@ -218,83 +224,36 @@ impl<'a> AgentVerdict<'a> {
     }
 }
 
-/// Every effective parameter of an agent.
-fn write_draw(row: &mut Row<'_>, campaign: &Campaign, draw: &AgentDraw) {
-    row.real(|| "mass_scale".into(), draw.mass_scale);
-    if let Agent::Uav(_) = campaign.agent {
-        row.real(|| "inertia_scale".into(), draw.inertia_scale);
-    }
-    row.real(|| "kappa".into(), draw.kappa);
-    if campaign.control.delay_s.is_some() {
-        row.real(|| "control_delay_s".into(), draw.control_delay_s);
-    }
-    let initial = [
-        ("error", &draw.error),
-        ("error_rate", &draw.error_rate),
-        ("error_integral", &draw.error_integral),
-    ];
-    for (name, values) in initial {
-        write_channels(row, campaign, values, |channel| {
-            format!("initial_{name}_{channel}")
-        });
-    }
-    for (index, (disturbance, values)) in campaign
-        .disturbances
-        .iter()
-        .zip(&draw.disturbances)
-        .enumerate()
-    {
-        for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
-            let acts = |channel: usize| disturbance.kind.acts_on(channel);
-            let applied = where_it(values, acts);
-            write_channels(row, campaign, &applied, |channel| {
-                format!("disturbance{index}_{}_{channel}", parameter.name)
+/// Every quantity of an agent as it acts; before those of a fault, whether it occurs and, if it strikes one channel,
+/// which.
+fn write_draw(row: &mut Row<'_>, campaign: &Campaign, quantities: &[Quantity], draw: &AgentDraw) {
+    let mut fault = None;
+    for quantity in quantities {
+        if let Source::Fault(index) = quantity.source
+            && fault != Some(index)
+        {
+            fault = Some(index);
+            let drawn = &draw.faults[index];
+            row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
+            if campaign.faults[index].strikes_one() {
+                let struck = drawn.only_channel();
+                let struck = struck.map(|channel| campaign.channels()[channel].clone());
+                row.name(
+                    || format!("fault{index}_channel"),
+                    struck.unwrap_or_default(),
+                );
+            }
+        }
+        let key = &quantity.key;
+        let cells = quantity.cells(draw);
+        if quantity.is_of_channels() {
+            for (value, channel) in cells.zip(campaign.channels()) {
+                row.real(|| format!("{key}_{channel}"), value);
+            }
+        } else {
+            cells.for_each(|value| {
+                row.real(|| key.clone(), value);
             });
         }
-    }
-    for (index, (fault, drawn)) in campaign.faults.iter().zip(&draw.faults).enumerate() {
-        row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
-        if fault.strikes_one() {
-            let names = campaign.channels();
-            let struck = drawn.only_channel().map(|channel| names[channel].clone());
-            row.name(
-                || format!("fault{index}_channel"),
-                struck.unwrap_or_default(),
-            );
-        }
-        let mut of_time = |name: &str, time_s: f64| {
-            let time_s = if drawn.occurs() { time_s } else { f64::NAN };
-            row.real(|| format!("fault{index}_{name}"), time_s);
-        };
-        of_time("onset_s", drawn.onset_s);
-        if fault.duration_s.is_some() {
-            of_time("duration_s", drawn.duration_s);
-        }
-        if fault.ramp_s.is_some() {
-            of_time("ramp_s", drawn.ramp_s);
-        }
-        for (parameter, values) in fault.kind.parameters().iter().zip(&drawn.parameters) {
-            let applied = where_it(values, |channel| drawn.strikes[channel]);
-            write_channels(row, campaign, &applied, |channel| {
-                format!("fault{index}_{}_{channel}", parameter.name)
-            });
-        }
-    }
-}
-
-/// The values of the channels on which something acts; not a number elsewhere.
-fn where_it(values: &[f64], acts: impl Fn(usize) -> bool) -> Vec<f64> {
-    let kept = |(channel, &value)| if acts(channel) { value } else { f64::NAN };
-    values.iter().enumerate().map(kept).collect()
-}
-
-fn write_channels(
-    row: &mut Row<'_>,
-    campaign: &Campaign,
-    values: &[f64],
-    name: impl Fn(&str) -> String,
-) {
-    for (value, channel) in values.iter().zip(campaign.channels()) {
-        row.real(|| name(channel), *value);
     }
 }

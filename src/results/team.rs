@@ -2,6 +2,7 @@
 
 use super::scores::{Scores, Status};
 use crate::campaign::Campaign;
+use crate::statistics::rms;
 use std::ops::Range;
 
 /// Where the values of some channels of a team's episode lie in a list of [`Scores`].
@@ -37,18 +38,11 @@ impl Layout {
     }
 }
 
-pub(super) fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| {
-        (sum + value * value, count + 1.0)
-    });
-    (sum / count).sqrt()
-}
-
 /// RMS error of each episode over the team and the channels; infinite where an agent diverged.
 pub(super) fn team_rmse(scores: &Scores, controller: usize, layout: &Layout) -> Vec<f64> {
     let of_episode = |episode: usize| match scores.status[controller][episode] {
         Status::Diverged => f64::INFINITY,
-        _ => root_mean_square(layout.of(&scores.rmse[controller], episode)),
+        _ => rms(layout.of(&scores.rmse[controller], episode)),
     };
     (0..scores.episodes()).map(of_episode).collect()
 }

@@ -3,8 +3,7 @@
 use super::paired::{PairedComparison, Ratio};
 use super::summary::MetricQuantiles;
 use crate::campaign::{ALL, Campaign};
-use crate::statistics::Interval;
-use crate::statistics::LEVEL;
+use crate::statistics::{Interval, LEVEL};
 use crate::util::format::rounded_up;
 
 /// What an interval says about the first of a pair.
@@ -49,7 +48,7 @@ pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) ->
 fn of_one(row: &MetricQuantiles) -> String {
     let rate = &row.failures;
     let (name, failed, n) = (&rate.controller, rate.failed(), rate.n);
-    let known = match (rate.upper_95, rate.interval()) {
+    let known = match (rate.upper_95, rate.interval) {
         // Above 50 % failures the interval is reported in place of the upper bound.
         (Some(upper), _) if 2 * failed <= n => {
             format!("is below {} %", rounded_up(100.0 * upper, 2))

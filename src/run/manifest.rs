@@ -4,10 +4,9 @@ use super::error::{MANIFEST, OutputError};
 use crate::backend::cpu::Precision;
 use crate::campaign::{Campaign, CampaignError, Setting};
 use crate::results::RequirementResult;
-use crate::simulation::Segment;
-use crate::simulation::Times;
 use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::stopping::Stopped;
+use crate::simulation::{Segment, Times};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -48,7 +47,8 @@ pub struct Manifest {
     /// Number format of the episode loop.
     pub precision: Precision,
     /// What flew them.
-    pub legs: Vec<Segment>,
+    #[serde(rename = "legs")]
+    pub segments: Vec<Segment>,
     /// What there is to know about the choice of the backend.
     pub notes: Vec<String>,
     /// How some episodes compare with the reference, if they were.
@@ -102,15 +102,15 @@ impl Manifest {
     /// # Errors
     /// If this version does not read the campaign any more.
     pub fn campaign(&self) -> Result<Campaign, CampaignError> {
-        let mut campaign = Campaign::parse_with_robot(
+        let campaign = Campaign::parse_with_robot(
             &self.campaign,
             Path::new(&self.campaign_path),
             &self.overlay,
             self.robot.as_deref(),
         )?;
-        campaign.seed = self.seed;
         // What a design draws belongs to the number of episodes that was asked for.
-        campaign.episodes = self.episodes_asked;
-        Ok(campaign)
+        campaign
+            .with_seed(self.seed)
+            .with_episodes(self.episodes_asked)
     }
 }

@@ -5,22 +5,19 @@ pub mod error;
 pub mod manifest;
 pub mod replay;
 pub mod replay_files;
-mod statistics;
 pub(crate) mod table_reader;
+mod tables;
 
 use crate::agent::Agent;
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;
 use crate::controllers::{GainSet, GainsError};
-use crate::results;
-use crate::results::sensitivity::{SensitivityResult, WorstEpisode};
-use crate::results::{MetricQuantiles, PairedComparison, Screening};
+use crate::results::{Results, harm, verdict};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
-use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, fly, open};
+use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, open, simulate};
 use directory::OutputDir;
 use error::{MANIFEST, OutputError};
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
-use statistics::Statistics;
 use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
@@ -39,14 +36,14 @@ pub enum RunError {
     Simulation(#[from] SimulationError),
     /// Fewer episodes flown than the directory holds already.
     #[error(
-        "{reason}; {flown} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
+        "{reason}; {simulated} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
         path.display()
     )]
     Interrupted {
         /// Why no more were flown.
         reason: GpuError,
         /// Episodes that were flown.
-        flown: u32,
+        simulated: u32,
         /// The directory.
         path: PathBuf,
         /// Episodes that it holds.
@@ -60,17 +57,9 @@ pub enum RunError {
 /// What a run found.
 #[derive(Debug)]
 pub struct Findings {
-    /// How every controller fared.
-    pub summary: Vec<MetricQuantiles>,
-    /// How every pair compares.
-    pub comparisons: Vec<PairedComparison>,
-    /// What each stratum does to each controller.
-    pub screenings: Vec<Screening>,
-    /// What each condition does to each controller and pair.
-    pub ranking: Vec<SensitivityResult>,
-    /// The worst episodes of each controller.
-    pub worst: Vec<WorstEpisode>,
-    /// How it was found, and what became of the requirements.
+    /// The statistics.
+    pub results: Results,
+    /// How it was found.
     pub manifest: Manifest,
 }
 
@@ -139,8 +128,8 @@ pub fn run_on(
     let synthesis_s = start.elapsed().as_secs_f64();
 
     told(Progress::Simulation);
-    let flown = |episodes| told(Progress::Simulated(episodes));
-    let flight = fly(campaign, &gains, options, gpu, &flown)?;
+    let simulated = |episodes| told(Progress::Simulated(episodes));
+    let flight = simulate(campaign, &gains, options, gpu, &simulated)?;
     notes.extend(flight.notes.iter().cloned());
     let start = Instant::now();
     told(Progress::CrossCheck);
@@ -151,27 +140,27 @@ pub fn run_on(
         };
     let Simulation {
         tables,
-        watch,
+        stopping,
         mut times,
-        legs,
+        segments,
         interrupted,
         ..
     } = flight;
     times.cross_check_s = start.elapsed().as_secs_f64();
     times.synthesis_s = synthesis_s;
 
-    let episodes = legs.iter().map(|leg| leg.episodes).sum();
+    let episodes = segments.iter().map(|segment| segment.episodes).sum();
     unless_more_is_there(out, interrupted.as_ref(), episodes)?;
 
     let start = Instant::now();
     told(Progress::Statistics);
-    let statistics = Statistics::of(campaign, &tables.scores, &flight.pool);
+    let results = Results::of(campaign, &tables.scores, &flight.pool);
     times.statistics_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
     told(Progress::Writing);
     out.begin()?;
-    statistics.write(campaign, &tables, extras.csv, out)?;
+    tables::write(campaign, &tables, &results, extras.csv, out)?;
     out.write("gains.json", &pretty(&gains.to_file(campaign))?)?;
     times.writing_s = start.elapsed().as_secs_f64();
     let manifest = Manifest {
@@ -189,31 +178,20 @@ pub fn run_on(
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,
-        stopped: watch.found(campaign),
-        verdict: results::verdict(&statistics.summary, &statistics.comparisons),
-        harm: results::harm(&statistics.screenings),
-        requirements: statistics.requirements.clone(),
+        stopped: stopping.found(campaign),
+        verdict: verdict(&results.summary, &results.comparisons),
+        harm: harm(&results.screenings),
+        requirements: results.requirements.clone(),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: options.precision,
-        legs,
+        segments,
         notes,
         cross_check,
         cross_check_missing,
         times,
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
-    Ok(found(statistics, manifest))
-}
-
-fn found(statistics: Statistics, manifest: Manifest) -> Findings {
-    Findings {
-        summary: statistics.summary,
-        comparisons: statistics.comparisons,
-        screenings: statistics.screenings,
-        ranking: statistics.ranking,
-        worst: statistics.worst,
-        manifest,
-    }
+    Ok(Findings { results, manifest })
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.
@@ -228,7 +206,7 @@ fn unless_more_is_there(
     {
         return Err(RunError::Interrupted {
             reason: reason.clone(),
-            flown: episodes,
+            simulated: episodes,
             path: out.path().to_path_buf(),
             earlier: earlier.episodes,
         });
@@ -245,20 +223,20 @@ fn checked(
     flight: &Simulation,
     count: Option<u32>,
 ) -> Result<Option<CrossCheck>, GpuError> {
-    let Some(leg) = flight.legs.first() else {
+    let Some(segment) = flight.segments.first() else {
         return Ok(None);
     };
-    let default = match leg.engine {
+    let default = match segment.engine {
         Engine::Gpu { .. } => GPU_CROSS_CHECK,
         Engine::Cpu { .. } => 0,
     };
     let count = count.unwrap_or(default);
     // A GPU that failed is gone; under `auto` its note says that its episodes are not checked.
-    if count == 0 || flight.legs.len() > 1 {
+    if count == 0 || flight.segments.len() > 1 {
         return Ok(None);
     }
     let scores = &flight.tables.scores;
-    let check = || cross_check(campaign, gains, options, leg, scores, gpu, count);
+    let check = || cross_check(campaign, gains, options, segment, scores, gpu, count);
     flight.pool.install(check).map(Some)
 }
 

@@ -96,26 +96,26 @@ pub fn replay(
     let index = index_of(&campaign, controller)?;
     let every = interval_steps(&campaign, interval_s)?;
     let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
-    let leg = manifest
-        .legs
+    let segment = manifest
+        .segments
         .iter()
-        .find(|leg| (leg.first..leg.first + leg.episodes).contains(&episode));
-    let fly_one = |precision, simd, controller, every| {
+        .find(|segment| (segment.first..segment.first + segment.episodes).contains(&episode));
+    let simulate_one = |precision, simd, controller, every| {
         let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
         cpu.trace(episode, controller, every)
     };
-    let fly = |precision, simd| -> Vec<Trajectory> {
+    let simulate = |precision, simd| -> Vec<Trajectory> {
         let controllers = 0..campaign.controllers.len();
         controllers
-            .map(|controller| fly_one(precision, simd, controller, every))
+            .map(|controller| simulate_one(precision, simd, controller, every))
             .collect()
     };
     // The reference, where what flew the run is not to be had.
-    let stand_in = |reason: String| (fly(Precision::F64, None), Some(reason));
-    let (flown, stand_in) = match leg.map(|leg| &leg.engine) {
+    let stand_in = |reason: String| (simulate(Precision::F64, None), Some(reason));
+    let (simulated, stand_in) = match segment.map(|segment| &segment.engine) {
         Some(Engine::Gpu { adapter, .. }) => {
             match on_gpu(adapter, &campaign, &gains, episode, every) {
-                Ok(flown) => (flown, None),
+                Ok(simulated) => (simulated, None),
                 Err(reason) => stand_in(reason),
             }
         }
@@ -123,16 +123,18 @@ pub fn replay(
         Some(&Engine::Cpu {
             simd: Some(simd), ..
         }) if !simd.is_available() => stand_in("this processor lacks the run's lanes".to_string()),
-        Some(&Engine::Cpu { simd, .. }) => (fly(manifest.precision, simd), None),
+        Some(&Engine::Cpu { simd, .. }) => (simulate(manifest.precision, simd), None),
         None => {
             return Err(OutputError::NoRun {
                 path: dir.to_path_buf(),
-                reason: format!("{MANIFEST}: legs does not say what simulated episode {episode}"),
+                reason: format!(
+                    "{MANIFEST}: segments does not say what simulated episode {episode}"
+                ),
             }
             .into());
         }
     };
-    let mut others: Vec<OtherController> = flown
+    let mut others: Vec<OtherController> = simulated
         .into_iter()
         .enumerate()
         .map(|(controller, (outcomes, snapshots))| OtherController {
@@ -147,7 +149,8 @@ pub fn replay(
         ..
     } = others.remove(index);
     let witness = AttenuationAnalysis::new(&campaign, &gains, index);
-    let attenuations = witness.of_episode(episode, || fly_one(Precision::F64, None, index, 1).1);
+    let attenuations =
+        witness.of_episode(episode, || simulate_one(Precision::F64, None, index, 1).1);
     Ok(Replay {
         campaign,
         episode,
@@ -202,10 +205,10 @@ fn on_gpu(
         batch: Some(1),
         ..Tuning::default()
     };
-    let mut flyer = GpuSimulator::new(&gpu, campaign, &gains.loops(), tuning)
+    let mut simulator = GpuSimulator::new(&gpu, campaign, &gains.loops(), tuning)
         .map_err(|error| error.to_string())?;
     let mut snapshots: Vec<Vec<Snapshot>> = vec![Vec::new(); campaign.controllers.len()];
-    let flown = flyer
+    let simulated = simulator
         .trace(&[episode], every, &mut |instant| {
             for (controller, snapshots) in snapshots.iter_mut().enumerate() {
                 snapshots.push(Snapshot {
@@ -216,8 +219,10 @@ fn on_gpu(
             }
         })
         .map_err(|error| error.to_string())?;
-    let flown = flown.into_iter().next();
-    let outcomes = flown.ok_or("the adapter sent no episode back")?.outcomes;
+    let simulated = simulated.into_iter().next();
+    let outcomes = simulated
+        .ok_or("the adapter sent no episode back")?
+        .outcomes;
     Ok(outcomes.into_iter().zip(snapshots).collect())
 }
 

@@ -92,18 +92,18 @@ pub fn cross_check(
     campaign: &Campaign,
     gains: &GainSet,
     options: &RunOptions,
-    leg: &Segment,
+    segment: &Segment,
     scores: &Scores,
     gpu: Option<&Gpu>,
     count: u32,
 ) -> Result<CrossCheck, GpuError> {
-    let episodes = choose(campaign.seed, leg, count);
+    let episodes = choose(campaign.seed, segment, count);
     let every = campaign.time.steps.div_ceil(SAMPLES);
     let loops = gains.loops();
     let reference = Cpu::new(campaign, &loops, Precision::F64, None);
     // Built only when it is needed.
     let nudged = LazyCell::new(|| Cpu::new(campaign, &nudged(&loops), Precision::F64, None));
-    let mut engine = match (&leg.engine, gpu) {
+    let mut engine = match (&segment.engine, gpu) {
         (Engine::Gpu { .. }, Some(gpu)) => {
             let tuning = Tuning {
                 batch: u32::try_from(episodes.len()).ok(),
@@ -125,7 +125,7 @@ pub fn cross_check(
     };
     for episodes in episodes.chunks(CHUNK) {
         let found = match &mut engine {
-            Tracer::Gpu(flyer) => trace_on_gpu(flyer, episodes, loops.len(), every)?,
+            Tracer::Gpu(simulator) => trace_on_gpu(simulator, episodes, loops.len(), every)?,
             Tracer::Cpu(cpu) => trace_on_cpu(cpu, episodes, loops.len(), every),
         };
         let expected = trace_on_cpu(&reference, episodes, loops.len(), every);
@@ -216,39 +216,39 @@ fn nudged(loops: &[Vec<LoopGains>]) -> Vec<Vec<LoopGains>> {
 
 /// `[episode][controller]`.
 fn trace_on_gpu(
-    flyer: &mut GpuSimulator<'_>,
+    simulator: &mut GpuSimulator<'_>,
     episodes: &[u32],
     controllers: usize,
     every: u32,
 ) -> Result<Vec<Vec<Traced>>, GpuError> {
     let mut seen: Vec<Vec<Vec<Vec<Vec<f64>>>>> =
         vec![vec![Vec::new(); controllers]; episodes.len()];
-    let flown: Vec<EpisodeResult> = flyer.trace(episodes, every, &mut |instant| {
+    let simulated: Vec<EpisodeResult> = simulator.trace(episodes, every, &mut |instant| {
         for (episode, seen) in seen.iter_mut().enumerate() {
             for (controller, seen) in seen.iter_mut().enumerate() {
                 seen.push(errors(&instant.agents(episode, controller)));
             }
         }
     })?;
-    let of_episode = |(flown, seen): (EpisodeResult, Vec<_>)| {
-        let pairs = flown.outcomes.into_iter().zip(seen);
+    let of_episode = |(simulated, seen): (EpisodeResult, Vec<_>)| {
+        let pairs = simulated.outcomes.into_iter().zip(seen);
         pairs
             .map(|(outcomes, errors)| Traced { outcomes, errors })
             .collect()
     };
-    Ok(flown.into_iter().zip(seen).map(of_episode).collect())
+    Ok(simulated.into_iter().zip(seen).map(of_episode).collect())
 }
 
 /// Distinct episodes of a leg, drawn evenly, in ascending order.
-fn choose(seed: u64, leg: &Segment, count: u32) -> Vec<u32> {
-    let count = count.min(leg.episodes) as usize;
+fn choose(seed: u64, segment: &Segment, count: u32) -> Vec<u32> {
+    let count = count.min(segment.episodes) as usize;
     let mut chosen = BTreeSet::new();
     for index in 0.. {
         if chosen.len() == count {
             break;
         }
         let address = Address {
-            episode: leg.first,
+            episode: segment.first,
             stream: Stream::CrossCheck,
             entry: 0,
             member: 0,
@@ -259,8 +259,8 @@ fn choose(seed: u64, leg: &Segment, count: u32) -> Vec<u32> {
             clippy::cast_sign_loss,
             reason = "a number below the count of episodes"
         )]
-        let offset = (address.unit(seed) * f64::from(leg.episodes)) as u32;
-        chosen.insert(leg.first + offset.min(leg.episodes - 1));
+        let offset = (address.unit(seed) * f64::from(segment.episodes)) as u32;
+        chosen.insert(segment.first + offset.min(segment.episodes - 1));
     }
     chosen.into_iter().collect()
 }

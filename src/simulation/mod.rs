@@ -148,11 +148,11 @@ pub struct Simulation {
     /// The tables.
     pub tables: Tables,
     /// What has ended the run early, if it has.
-    pub watch: StoppingRule,
+    pub stopping: StoppingRule,
     /// Times so far.
     pub times: Times,
     /// What flew, in the order of the episodes; together they are the first episodes of the campaign.
-    pub legs: Vec<Segment>,
+    pub segments: Vec<Segment>,
     /// What the user should know of the choice of the backend.
     pub notes: Vec<String>,
     /// Why episodes are missing, if they are.
@@ -165,7 +165,7 @@ impl Simulation {
     /// Episodes that were flown.
     #[must_use]
     pub fn episodes(&self) -> u32 {
-        self.legs.iter().map(|leg| leg.episodes).sum()
+        self.segments.iter().map(|segment| segment.episodes).sum()
     }
 }
 
@@ -205,7 +205,7 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
 /// # Errors
 /// If the threads cannot be started, or a GPU is asked for and flies nothing. A GPU that fails later leaves the
 /// episodes that it finished: the CPU flies the others if it may, else they are missing and the flight says why.
-pub fn fly(
+pub fn simulate(
     campaign: &Campaign,
     gains: &GainSet,
     options: &RunOptions,
@@ -219,9 +219,9 @@ pub fn fly(
         .map_err(|source| SimulationError::Threads { threads, source })?;
     let mut flight = Simulation {
         tables: Tables::new(campaign),
-        watch: StoppingRule::new(campaign),
+        stopping: StoppingRule::new(campaign),
         times: Times::default(),
-        legs: Vec::new(),
+        segments: Vec::new(),
         notes: Vec::new(),
         interrupted: None,
         pool,
@@ -233,15 +233,15 @@ pub fn fly(
             told.fetch_add(episodes, Ordering::Relaxed);
             done(episodes);
         });
-        let flown = flight.episodes();
-        told.fetch_sub(flown, Ordering::Relaxed);
+        let simulated = flight.episodes();
+        told.fetch_sub(simulated, Ordering::Relaxed);
         match failure {
             None => {}
             Some(error) if options.backend == Backend::Auto => flight.notes.push(format!(
-                "the GPU failed after {flown} of {} episodes, which are not cross-checked, and the CPU simulated the others: {error}",
+                "the GPU failed after {simulated} of {} episodes, which are not cross-checked, and the CPU simulated the others: {error}",
                 campaign.episodes
             )),
-            Some(error) if flown == 0 => return Err(SimulationError::Gpu(error)),
+            Some(error) if simulated == 0 => return Err(SimulationError::Gpu(error)),
             Some(error) => {
                 flight.interrupted = Some(error);
                 return Ok(flight);
@@ -272,12 +272,12 @@ impl Simulation {
         done: &(dyn Fn(u32) + Sync),
     ) -> Option<GpuError> {
         let start = Instant::now();
-        let mut flyer = match GpuSimulator::new(gpu, campaign, &gains.loops(), options.tuning) {
-            Ok(flyer) => flyer,
+        let mut simulator = match GpuSimulator::new(gpu, campaign, &gains.loops(), options.tuning) {
+            Ok(simulator) => simulator,
             Err(error) => return Some(error),
         };
         self.times.loop_s += start.elapsed().as_secs_f64();
-        let (tables, watch) = (&mut self.tables, &mut self.watch);
+        let (tables, stopping) = (&mut self.tables, &mut self.stopping);
         let (times, pool) = (&mut self.times, &self.pool);
         let (mut next, mut failure) = (0, None);
         let enough = AtomicBool::new(false);
@@ -288,18 +288,20 @@ impl Simulation {
             let filling = scope.spawn(move || {
                 let mut spent_s = 0.0;
                 for batch in batches {
-                    spent_s += fill(tables, watch, campaign, &batch);
-                    seen.store(watch.is_done(), Ordering::Relaxed);
+                    spent_s += fill(tables, stopping, campaign, &batch);
+                    seen.store(stopping.is_done(), Ordering::Relaxed);
                 }
                 spent_s
             });
             let more = || !enough.load(Ordering::Relaxed);
             while next < campaign.episodes && failure.is_none() && more() {
-                let until = next.saturating_add(flyer.batch()).min(campaign.episodes);
+                let until = next
+                    .saturating_add(simulator.batch())
+                    .min(campaign.episodes);
                 let start = Instant::now();
-                let flown = pool.install(|| flyer.fly(next..until, done));
+                let simulated = pool.install(|| simulator.simulate(next..until, done));
                 times.loop_s += start.elapsed().as_secs_f64();
-                match flown.map(|flown| sender.send(flown)) {
+                match simulated.map(|simulated| sender.send(simulated)) {
                     Ok(Ok(())) => next = until,
                     // Nobody receives any more: filling has panicked, which is passed on below.
                     Ok(Err(_)) => break,
@@ -313,17 +315,17 @@ impl Simulation {
         // What was flown beyond the end is in no table.
         let episodes = self.recorded();
         if episodes > 0 {
-            self.legs.push(Segment {
+            self.segments.push(Segment {
                 first: 0,
                 episodes,
                 engine: Engine::Gpu {
                     adapter: gpu.adapter().clone(),
-                    batch: flyer.batch(),
-                    gpu_times: flyer.times(),
+                    batch: simulator.batch(),
+                    gpu_times: simulator.times(),
                 },
             });
         }
-        failure.filter(|_| !self.watch.is_done())
+        failure.filter(|_| !self.stopping.is_done())
     }
 
     /// Flies the episodes that are left on the CPU.
@@ -335,7 +337,7 @@ impl Simulation {
         done: &(dyn Fn(u32) + Sync),
     ) {
         let first = self.episodes();
-        if first == campaign.episodes || self.watch.is_done() {
+        if first == campaign.episodes || self.stopping.is_done() {
             return;
         }
         let start = Instant::now();
@@ -347,15 +349,16 @@ impl Simulation {
             Some(stop) => stop.every.clamp(LOOK_BATCH, CPU_BATCH),
         };
         let mut next = first;
-        while next < campaign.episodes && !self.watch.is_done() {
+        while next < campaign.episodes && !self.stopping.is_done() {
             let until = next.saturating_add(batch).min(campaign.episodes);
             let start = Instant::now();
-            let flown = self.pool.install(|| cpu.fly(next..until, done));
+            let simulated = self.pool.install(|| cpu.simulate(next..until, done));
             self.times.loop_s += start.elapsed().as_secs_f64();
-            self.times.statistics_s += fill(&mut self.tables, &mut self.watch, campaign, &flown);
+            self.times.statistics_s +=
+                fill(&mut self.tables, &mut self.stopping, campaign, &simulated);
             next = until;
         }
-        self.legs.push(Segment {
+        self.segments.push(Segment {
             first,
             episodes: self.recorded() - first,
             engine: Engine::Cpu {
@@ -369,18 +372,18 @@ impl Simulation {
 /// Adds flown episodes to the tables, until the watch has seen enough; the time that it took, s.
 fn fill(
     tables: &mut Tables,
-    watch: &mut StoppingRule,
+    stopping: &mut StoppingRule,
     campaign: &Campaign,
-    flown: &[EpisodeResult],
+    simulated: &[EpisodeResult],
 ) -> f64 {
     let start = Instant::now();
-    for episode in flown {
-        if watch.is_done() {
+    for episode in simulated {
+        if stopping.is_done() {
             break;
         }
         tables.add(campaign, episode);
         let status = &tables.scores.status;
-        watch.take(|controller| status[controller].last().copied().unwrap_or(Status::Ok));
+        stopping.take(|controller| status[controller].last().copied().unwrap_or(Status::Ok));
     }
     start.elapsed().as_secs_f64()
 }

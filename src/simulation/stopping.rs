@@ -34,7 +34,7 @@ pub struct Stopped {
     pub lower: f64,
     /// Upper bound of its failure rate.
     pub upper: f64,
-    /// The goal that is reached, in words; none if all episodes were flown in vain.
+    /// The goal that is reached, in words; none if no goal was reached.
     pub reached: Option<String>,
 }
 

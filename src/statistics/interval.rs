@@ -1,5 +1,7 @@
 //! Intervals, estimates and their confidence level.
 
+/// An effect is called significant at or below this p-value.
+pub const SIGNIFICANCE: f64 = 0.05;
 /// Level of every two-sided interval, and of the one-sided failure bound.
 pub const LEVEL: f64 = 0.95;
 

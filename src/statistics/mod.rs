@@ -1,6 +1,6 @@
 //! Statistics of a campaign: what the verdicts and metrics of its episodes say about the controllers.
 //!
-//! The sample unit is the episode, and the episodes are independent draws ([`sampling`](crate::random)
+//! The sample unit is the episode, and the episodes are independent draws ([`random`](crate::random)
 //! says what other designs allow); every function here is pure and deterministic, and the only
 //! random numbers, permutations, are addressed by a seed. A diverged episode carries a metric of `+inf`
 //! (it ranks worst), so ranks decide wherever a mean would not survive it. No function returns
@@ -51,14 +51,14 @@ pub use correlation::{somers_d, spearman};
 pub use difference::independent_difference;
 pub use effect::{Effect, Outcome, Permutations, effects};
 pub use holm::holm;
-pub use interval::{Estimate, Interval, LEVEL};
+pub use interval::{Estimate, Interval, LEVEL, SIGNIFICANCE};
 pub use median::median_bca;
 pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval};
 pub use rank::Ranked;
 pub use replicates::{replicate_mean, replicate_p};
-pub use root_mean_square::root_mean_square;
+pub use root_mean_square::{rms, root_mean_square};
 pub use sample_size::{failures_allowed, power, runs_needed};
 pub use sequential::{
     Proof, sequential_interval, sequential_lower, sequential_proof, sequential_runs_needed,

@@ -1,6 +1,15 @@
-//! The size of numbers whose sign does not matter.
+//! The size of numbers whose sign does not matter: of errors, whose number is always the same, and of drawn quantities,
+//! whose number is not.
 
-/// Root mean square; `None` if there are no values.
+/// Root mean square of errors: the plain formula; NaN of no values.
+pub fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), value| {
+        (sum + value * value, count + 1.0)
+    });
+    (sum / count).sqrt()
+}
+
+/// Root mean square of drawn quantities; `None` if there are no values.
 ///
 /// Values of one size give exactly this size, however many there are. The formula alone would not: 0.1 over 12 values
 /// gives 0.10000000000000002, over 4 values 0.1, so that a constant seemed to vary with the number of those that it
@@ -40,11 +49,13 @@ mod tests {
                     .step_by(3)
                     .for_each(|value| *value = -size);
                 assert_eq!(root_mean_square(values.clone()), Some(size), "{count}");
-                inexact += u32::from(formula(&values) != size);
+                // Of tiny and huge sizes the squares are none.
+                let rounds = (0.01..1.0).contains(&size);
+                inexact += u32::from(rounds && formula(&values) != size);
             }
         }
         // Negative control: the formula alone misses the size of many of them, of 0.1 over 12 values among others.
-        assert!(inexact > 400, "{inexact}");
+        assert!(inexact > 1000, "{inexact}");
         assert_eq!(formula(&[0.1; 12]), 0.100_000_000_000_000_02);
     }
 

@@ -9,9 +9,8 @@ use super::error::{Step, SynthesisError};
 use super::lapack;
 use super::linalg::{max_abs, power_of_two_near};
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT::PSDTriangleConeT,
-};
+use clarabel::solver::SupportedConeT::PSDTriangleConeT;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 use nalgebra::DMatrix;
 use std::f64::consts::SQRT_2;
 use std::iter::zip;

@@ -28,7 +28,7 @@ use urts_mc::campaign::Campaign;
 use urts_mc::controllers::GainSet;
 use urts_mc::model::episode::Model;
 use urts_mc::reference::Reference;
-use urts_mc::simulation::{RunOptions, fly};
+use urts_mc::simulation::{RunOptions, simulate};
 
 /// Floating-point operations per UAV-step, counted on the hand-written programs.
 const FLOP: [(&str, f64); 2] = [("ftc", 3640.0), ("pid", 2344.0)];
@@ -58,13 +58,15 @@ fn main() {
 /// largest.
 fn tables(robots: &Campaign) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/biped-ground-reaction.toml");
-    let mut campaign = Campaign::load(&path).expect("the campaign is valid");
-    campaign.reference = robots.reference.clone();
-    if let Reference::Walk(walks) = &mut campaign.reference {
-        walks.resize(3, walks[0].clone());
-    }
-    campaign.team = 3;
-    campaign.time.steps = 10_000;
+    let campaign = Campaign::load(&path).expect("the campaign is valid");
+    let campaign = campaign.with(|campaign| {
+        campaign.reference = robots.reference.clone();
+        if let Reference::Walk(walks) = &mut campaign.reference {
+            walks.resize(3, walks[0].clone());
+        }
+        campaign.team = 3;
+        campaign.time.steps = 10_000;
+    });
     let start = Instant::now();
     black_box(Model::<f32>::new(&campaign));
     let time = start.elapsed().as_secs_f64();
@@ -104,23 +106,26 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
     let of = |name: &String| flop[usize::from(name != flop[0].0)].1;
     let flop: f64 = campaign.controllers.iter().map(of).sum();
     for &episodes in sizes {
-        let mut campaign = campaign.clone();
-        campaign.episodes = episodes;
+        let campaign = campaign.clone().with(|own| own.episodes = episodes);
         let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
-        let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains.loops(), Tuning::default())
+        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains.loops(), Tuning::default())
             .expect("the campaign fits the adapter");
         let mut first = 0;
         while first < episodes {
-            let next = (first + flyer.batch()).min(episodes);
-            black_box(flyer.fly(first..next, &|_| ()).expect("the GPU goes on"));
+            let next = (first + simulator.batch()).min(episodes);
+            black_box(
+                simulator
+                    .simulate(first..next, &|_| ())
+                    .expect("the GPU goes on"),
+            );
             first = next;
         }
-        let times = flyer.times();
+        let times = simulator.times();
         let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
         let controllers = campaign.controllers.len() as f64;
         println!(
             "{episodes:>9} {:>8} {:>16.2} {:>10.1} {:>10.2} {:>10.2} {:>12.2} {:>12.2}",
-            flyer.batch(),
+            simulator.batch(),
             1e-6 * steps * controllers / times.kernel_s,
             1e-9 * steps * flop / times.kernel_s,
             times.compile_s,
@@ -134,12 +139,11 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
 /// The share of the wall time that is not the episode loop, over 1000 episodes under all three controllers and on all
 /// cores.
 fn outside_the_loop(campaign: &Campaign) {
-    let mut campaign = campaign.clone();
-    campaign.episodes = 1000;
+    let campaign = campaign.clone().with(|own| own.episodes = 1000);
     let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
     let settings = RunOptions::cpu(Precision::F32);
     let start = Instant::now();
-    let flight = fly(&campaign, &gains, &settings, None, &|_| ()).expect("threads");
+    let flight = simulate(&campaign, &gains, &settings, None, &|_| ()).expect("threads");
     let total = start.elapsed().as_secs_f64();
     let outside = total - flight.times.loop_s;
     println!(

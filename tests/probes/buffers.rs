@@ -1,9 +1,9 @@
 //! Probes of shaders/episode.wgsl: who an invocation is, and the buffers that its state lives in.
 
-use super::groups::held_next;
+use super::exogenous::begin;
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};
-use super::signals::begin;
+use super::team::held_next;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
 use crate::backend::gpu::uniforms::{LegPlantUniforms, UavUniforms};

@@ -36,8 +36,8 @@ pub(super) const OF_SIGNALS: &[Control] = &[
     ),
     control(
         "delay_line",
-        "fma(wanted, actuator.gain, actuator.bias)",
-        "fma(wanted, actuator.bias, actuator.gain)",
+        "fma(sent, actuator.gain, actuator.bias)",
+        "fma(sent, actuator.bias, actuator.gain)",
         "actuator_command",
     ),
     control(
@@ -223,8 +223,8 @@ pub(super) const OF_SIGNALS: &[Control] = &[
     ),
     control(
         "exogenous",
-        "    if exogenous_inputs_ticks(step) {\n        last_sent = wanted;\n    }",
-        "    last_sent = wanted;",
+        "    if exogenous_inputs_ticks(step) {\n        last_sent = sent;\n    }",
+        "    last_sent = sent;",
         "exogenous_inputs_remember",
     ),
     control(

@@ -123,8 +123,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "controller",
-        "setting.gains[KINDS - 1u].smoothing, is_attitude()",
-        "setting.gains[0].smoothing, is_attitude()",
+        "uniforms.gains[KINDS - 1u].smoothing, is_attitude()",
+        "uniforms.gains[0].smoothing, is_attitude()",
         "gains",
     ),
     control(
@@ -147,8 +147,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "plant_uav",
-        "clamp(thrust_wanted, 0.0, setting.plant.max_thrust)",
-        "clamp(thrust_wanted, 0.0, setting.plant.max_thrust * 0.999)",
+        "clamp(thrust_demanded, 0.0, uniforms.plant.max_thrust)",
+        "clamp(thrust_demanded, 0.0, uniforms.plant.max_thrust * 0.999)",
         "plant",
     ),
     control(
@@ -293,8 +293,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "plant_uav",
-        "select(0.0, setting.plant.gravity, own.channel == HEIGHT)",
-        "setting.plant.gravity",
+        "select(0.0, uniforms.plant.gravity, own.channel == HEIGHT)",
+        "uniforms.plant.gravity",
         "plant",
     ),
     control(
@@ -325,13 +325,13 @@ const CONTROLS: &[Control] = &[
         "team",
         "let middle = reference_at(half + 1u);",
         "let middle = reference_at(half);",
-        "group_advance",
+        "team_state_advance",
     ),
     control(
         "team",
         "(step + 1u) % FLUSH_STEPS == 0u",
         "step % FLUSH_STEPS == 1u",
-        "group_advance",
+        "team_state_advance",
     ),
     control(
         "team",
@@ -389,7 +389,7 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "team",
-        "exogenous_inputs_remember(step, response.wanted, agent_motion",
+        "exogenous_inputs_remember(step, response.sent, agent_motion",
         "exogenous_inputs_remember(step, response.command, agent_motion",
         "agent_remember",
     ),
@@ -403,7 +403,7 @@ const CONTROLS: &[Control] = &[
         "team",
         "turbulence_advance(k, step);",
         "turbulence_advance(k, step + 1u);",
-        "group_end_step",
+        "team_state_end_step",
     ),
     control(
         "episode",

@@ -4,8 +4,7 @@
 use super::shapes;
 use super::world::World;
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
-use crate::backend::gpu::layout;
-use crate::backend::gpu::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span};
+use crate::backend::gpu::layout::{self, OUTCOME_WORDS, SHOWN_WORDS, Span};
 use crate::backend::gpu::pipeline::{BINDINGS, ENTRIES};
 use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::uniforms::{
@@ -20,8 +19,7 @@ use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
 use crate::model::plant::leg::LegUniforms;
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
-use crate::random::philox;
-use crate::random::philox::Stream;
+use crate::random::philox::{self, Stream};
 use naga::{AddressSpace, Expression, Handle, Literal, Module, StorageAccess, TypeInner};
 use std::mem::offset_of;
 use std::path::Path;
@@ -303,7 +301,7 @@ fn val_constants_are_those_of_rust() {
             ("MULTIPLIERS", philox::MULTIPLIERS.to_vec()),
             ("WEYL", philox::WEYL.to_vec()),
             ("STREAM_NOISE", count(Stream::Noise as usize)),
-            ("STREAM_BURST", count(Stream::IntermittentWindow as usize)),
+            ("STREAM_INTERMITTENT", count(Stream::Intermittent as usize)),
             ("STREAM_TURBULENCE", count(Stream::Turbulence as usize)),
             ("MEMBERS_PER_AGENT", count(MEMBERS_PER_AGENT)),
             ("UNIT_SPACING", number(math::UNIT_SPACING)),

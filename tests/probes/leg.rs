@@ -87,7 +87,7 @@ pub(super) fn dynamics<const CUT: bool, const NS: usize>(
         let q = array(number(0u), number(1u), number(2u), number(3u), number(4u), number(5u));
         let rate = array(number(6u), number(7u), number(8u), number(9u), number(10u), number(11u));
         let torque = array(number(12u), number(13u), number(14u), number(15u), number(16u), number(17u));
-        var found = forward_dynamics(setting.plant.model, q, rate, torque);
+        var found = forward_dynamics(uniforms.plant.model, q, rate, torque);
         for (var k = 0u; k < 6u; k++) { answer_number(k, found[k]); }";
     let sizes = std::array::from_fn(|k: usize| [1.5, 2.0, 10.0][k / LEG_JOINTS]);
     world.check(lab, body, 6, sized::<18>(sizes), |scene| {

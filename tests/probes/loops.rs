@@ -140,8 +140,8 @@ pub(super) fn controller<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         scene.each(|scene, a, c| {
             let gains = &world.gains[c];
             let channel = scene.group.agents[a].channels[c];
-            let wanted = at_stage!(stage, STAGE, feedback(gains, channel.at::<STAGE>()));
-            scene.answer_number(a, c, wanted);
+            let sent = at_stage!(stage, STAGE, feedback(gains, channel.at::<STAGE>()));
+            scene.answer_number(a, c, sent);
             for estimate in fault_estimates(channel.at::<0>()) {
                 scene.answer_number(a, c, estimate);
             }
@@ -164,7 +164,7 @@ pub(super) fn step_channels<P: Flies<NC, NX>, const NC: usize, const NS: usize, 
     world.check(lab, body, 0, sized([20.0, 1.0, 5.0, 1.0, 1.0]), |scene| {
         let stage = scene.stage;
         scene.each(|scene, a, c| {
-            let [acceleration, sensor_fault, told, off, off_rate] = scene.numbers(a, c);
+            let [acceleration, sensor_fault, applied_feedback, off, off_rate] = scene.numbers(a, c);
             let measured = Measured {
                 sensor_fault,
                 off: [off, off_rate],
@@ -177,7 +177,7 @@ pub(super) fn step_channels<P: Flies<NC, NX>, const NC: usize, const NS: usize, 
                     channel,
                     acceleration,
                     &measured,
-                    told,
+                    applied_feedback,
                     &h,
                 );
             });
@@ -236,8 +236,8 @@ pub(super) fn answer_response<const NC: usize, const NS: usize, const NX: usize>
     response: &Response<Tracked, NC, NX>,
 ) {
     scene.answer_number(a, c, response.error_acceleration[c]);
-    scene.answer_number(a, c, response.told[c]);
-    scene.answer_number(a, c, response.wanted[c]);
+    scene.answer_number(a, c, response.applied_feedback[c]);
+    scene.answer_number(a, c, response.sent[c]);
     scene.answer_number(a, c, response.command[c]);
     // What no limit cuts is not cut by a rounding error either: saturation is told by an exact zero.
     let excess = response.excess[c];

@@ -5,11 +5,11 @@
 //! | `layout` | without a device: the joined text is valid; structs, bindings and constants are those of Rust |
 //! | `twins` | without a device: which function is whose twin, and that each has a probe |
 //! | `table` | the probes: their names and the functions that they call |
-//! | `pure`, `loops`, `memory`, `signals`, `groups`, `buffers` | what they do |
+//! | `pure`, `loops`, `windows`, `exogenous`, `team`, `buffers` | what they do |
 //! | `controls`, `changes` | one change of the shaders at a time, and the probe that must notice |
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
 //! | `leg` | the dynamics of a robot's leg |
-//! | `iterations` | how often loops run, against the bound that keeps dispatches short enough for software drivers |
+//! | `iterations` | the bound on the iterations of loops, and the loops that it counts |
 //! | `vortex` | the jets of rotors |
 //! | `world`, `states`, `image` | teams in random states, and how their state travels |
 //!
@@ -29,23 +29,23 @@
 mod buffers;
 mod changes;
 mod controls;
-mod groups;
+mod exogenous;
 mod harness;
 mod image;
 mod iterations;
 mod layout;
 mod leg;
 mod loops;
-mod memory;
 mod numbers;
 mod pure;
 mod shapes;
-mod signals;
 mod states;
 mod table;
+mod team;
 mod tracked;
 mod twins;
 mod vortex;
+mod windows;
 mod world;
 
 use harness::Lab;

@@ -48,8 +48,8 @@ fn answer_number(k: u32, value: f32) {
 
 fn answer_response(response: Response) {
     answer_number(0u, response.error_acceleration);
-    answer_number(1u, response.told);
-    answer_number(2u, response.wanted);
+    answer_number(1u, response.applied_feedback);
+    answer_number(2u, response.sent);
     answer_number(3u, response.command);
     answer_number(4u, response.excess);
     answer_number(5u, response.extra_rate.x);

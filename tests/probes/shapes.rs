@@ -1,10 +1,8 @@
 //! The shapes that are checked and probed.
 
-use crate::agent::ActuationKind;
-use crate::agent::Uav;
 use crate::agent::robot::Robot;
-use crate::backend::gpu::shape::PLANTS;
-use crate::backend::gpu::shape::Shape;
+use crate::agent::{ActuationKind, Uav};
+use crate::backend::gpu::shape::{PLANTS, Shape};
 use crate::backend::gpu::signals::{LISTS, Lists};
 use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;

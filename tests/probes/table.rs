@@ -2,7 +2,7 @@
 
 use super::harness::{Compared, Lab};
 use super::world::World;
-use super::{buffers, groups, leg, loops, memory, pure, shapes, signals, vortex};
+use super::{buffers, exogenous, leg, loops, pure, shapes, team, vortex, windows};
 use crate::model::episode::PlantKind;
 
 /// A probe of one or a few functions.
@@ -93,7 +93,7 @@ fn leg_dynamics(lab: &Lab) -> Compared {
 /// Pairs of normal numbers.
 fn pairs(lab: &Lab) -> Compared {
     let [shape, ..] = shapes::probed();
-    memory::pairs(lab, &World::<_, 1, 10, 0>::new(shape, shapes::axis()))
+    windows::pairs(lab, &World::<_, 1, 10, 0>::new(shape, shapes::axis()))
 }
 
 /// Functions of their arguments alone.
@@ -222,40 +222,40 @@ pub(super) const MEMORY: &[Probe] = &[
     probe!(
         "switches",
         ["window_weight", "window_value", "window_at", "next_change"],
-        over_shapes!(memory::switched)
+        over_shapes!(windows::switched)
     ),
     probe!(
         "bursts",
         ["intermittent_window_at", "own_member"],
-        over_shapes!(memory::burst)
+        over_shapes!(windows::burst)
     ),
     probe!(
         "actuator_command",
         ["actuator_command"],
-        over_shapes!(memory::actuators)
+        over_shapes!(windows::actuators)
     ),
     probe!(
         "delay_line_hold",
         ["delay_line_hold"],
-        over_shapes!(memory::rings_held)
+        over_shapes!(windows::rings_held)
     ),
     probe!(
         "delay_line_recall",
         ["delay_line_recall", "delay_line_or_past"],
-        over_shapes!(memory::rings_played)
+        over_shapes!(windows::rings_played)
     ),
     probe!(
         "delay_line_record",
         ["delay_line_record"],
-        over_shapes!(memory::rings_recorded)
+        over_shapes!(windows::rings_recorded)
     ),
     probe!(
         "delay_line_read",
         ["delay_line_read", "delay_line_place"],
-        over_shapes!(memory::rings_read)
+        over_shapes!(windows::rings_read)
     ),
     probe!("normal_pair", ["normal_pair"], pairs),
-    probe!("noise_draw", ["noise_draw"], over_shapes!(memory::noise)),
+    probe!("noise_draw", ["noise_draw"], over_shapes!(windows::noise)),
     probe!(
         "turbulence",
         [
@@ -263,7 +263,7 @@ pub(super) const MEMORY: &[Probe] = &[
             "turbulence_force",
             "turbulence_advance"
         ],
-        over_shapes!(memory::turbulence)
+        over_shapes!(windows::turbulence)
     ),
 ];
 
@@ -272,58 +272,58 @@ pub(super) const SIGNALS: &[Probe] = &[
     probe!(
         "exogenous_inputs_begin",
         ["exogenous_inputs_begin", "exogenous_inputs_ticks"],
-        over_shapes!(signals::begun)
+        over_shapes!(exogenous::begun)
     ),
     probe!(
         "exogenous_inputs_hold",
         ["exogenous_inputs_hold"],
-        over_shapes!(signals::held)
+        over_shapes!(exogenous::held)
     ),
     probe!(
         "held_apart",
         ["hold_command", "hold_sensor"],
-        over_shapes!(signals::held_apart)
+        over_shapes!(exogenous::held_apart)
     ),
     probe!(
         "exogenous_inputs_evaluate",
         ["exogenous_inputs_evaluate"],
-        over_shapes!(signals::evaluated)
+        over_shapes!(exogenous::evaluated)
     ),
     probe!(
         "oscillation_turned",
         ["oscillation_turned"],
-        over_shapes!(signals::turns)
+        over_shapes!(exogenous::turns)
     ),
     probe!(
         "commands",
         ["carry_command", "limit_rate"],
-        over_shapes!(signals::commands)
+        over_shapes!(exogenous::commands)
     ),
-    probe!("measure", ["measure"], over_shapes!(signals::measured)),
+    probe!("measure", ["measure"], over_shapes!(exogenous::measured)),
     probe!(
         "exogenous_inputs_remember",
         ["exogenous_inputs_remember", "remember_command"],
-        over_shapes!(signals::remembered)
+        over_shapes!(exogenous::remembered)
     ),
     probe!(
         "metrics_take",
         ["metrics_take"],
-        over_shapes!(signals::metrics)
+        over_shapes!(exogenous::metrics)
     ),
     probe!(
         "metrics_flush",
         ["metrics_flush"],
-        over_shapes!(signals::flushed)
+        over_shapes!(exogenous::flushed)
     ),
     probe!(
         "add_to_total",
         ["add_to_total"],
-        over_shapes!(signals::added)
+        over_shapes!(exogenous::added)
     ),
     probe!(
         "metrics_before_fault",
         ["metrics_before_fault"],
-        over_shapes!(signals::before_fault)
+        over_shapes!(exogenous::before_fault)
     ),
 ];
 
@@ -332,9 +332,9 @@ pub(super) const GROUPS: &[Probe] = &[
     probe!(
         "slot",
         ["slot", "seen", "publish", "command_slot"],
-        over_shapes!(groups::slots)
+        over_shapes!(team::slots)
     ),
-    probe!("team_sum", ["team_sum"], over_shapes!(groups::team_sum)),
+    probe!("team_sum", ["team_sum"], over_shapes!(team::team_sum)),
     probe!(
         "vortex_force",
         ["vortex_force", "vortex_drawn", "agent_place"],
@@ -343,46 +343,58 @@ pub(super) const GROUPS: &[Probe] = &[
     probe!(
         "agent_respond",
         ["agent_respond"],
-        over_shapes!(groups::responses)
+        over_shapes!(team::responses)
     ),
     probe!(
         "team_commands",
         ["team_commands", "finite"],
-        over_shapes!(groups::team_commands)
+        over_shapes!(team::team_commands)
     ),
     probe!(
         "agent_seen",
         ["agent_motion", "agent_distortion", "agent_feedback"],
-        over_shapes!(groups::seen)
+        over_shapes!(team::seen)
     ),
     probe!(
         "agent_remember",
         ["agent_remember"],
-        over_shapes!(groups::remembered)
+        over_shapes!(team::remembered)
     ),
     probe!(
-        "group_end_step",
-        ["group_end_step"],
-        over_shapes!(groups::ended)
+        "team_state_end_step",
+        ["team_state_end_step"],
+        over_shapes!(team::ended)
     ),
     probe!(
         "agent_observe",
         ["agent_observe"],
-        over_shapes!(groups::observed)
+        over_shapes!(team::observed)
     ),
-    probe!("group_hold", ["group_hold"], over_shapes!(groups::held)),
     probe!(
-        "group_begin_step",
-        ["group_begin_step"],
-        over_shapes!(groups::begun)
+        "team_state_hold",
+        ["team_state_hold"],
+        over_shapes!(team::held)
     ),
-    probe!("group_stage", ["group_stage"], over_shapes!(groups::stages)),
     probe!(
-        "group_advance",
-        ["group_advance"],
-        over_shapes!(groups::advanced)
+        "team_state_begin_step",
+        ["team_state_begin_step"],
+        over_shapes!(team::begun)
     ),
-    probe!("group_show", ["group_show"], over_shapes!(groups::shown)),
+    probe!(
+        "team_state_stage",
+        ["team_state_stage"],
+        over_shapes!(team::stages)
+    ),
+    probe!(
+        "team_state_advance",
+        ["team_state_advance"],
+        over_shapes!(team::advanced)
+    ),
+    probe!(
+        "team_state_show",
+        ["team_state_show"],
+        over_shapes!(team::shown)
+    ),
     probe!(
         "identify",
         [

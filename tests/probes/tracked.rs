@@ -9,8 +9,7 @@
 //!
 //! Operations are calls and not copies: every twin of every shape is compiled for this lane.
 
-use crate::model::lanes::math;
-use crate::model::lanes::{Kernel, Lane};
+use crate::model::lanes::{Kernel, Lane, math};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A single, and how far the shader's may be from it.

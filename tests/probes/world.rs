@@ -5,8 +5,7 @@ use super::harness::{Case, Compared, Expected, Job, Lab, Left};
 use super::image::{FAILED, image, image_words, stored};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
-use crate::backend::gpu::layout;
-use crate::backend::gpu::layout::{NEVER, Span};
+use crate::backend::gpu::layout::{self, NEVER, Span};
 use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::uniforms::{GainsUniforms, PlantUniforms, SettingHead};
 use crate::model::agent::GroupParameters;
@@ -302,7 +301,11 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             state[FAILED] = Expected::Any;
             failed = failed.min(left.given[FAILED]);
             let answers = &scene.answers[agent][channel];
-            assert_eq!(state.len() + answers.len(), left.given.len(), "all is told");
+            assert_eq!(
+                state.len() + answers.len(),
+                left.given.len(),
+                "all is applied_feedback"
+            );
             for (k, &expected) in state.iter().enumerate() {
                 compared.take(expected, left.given[k], || at("state", k));
             }

@@ -1,6 +1,6 @@
 //! Every shipped campaign, and what the paper and the specification expect of the two big ones.
 
-use crate::common::{altered, campaign, fly, shipped_campaigns, tables};
+use crate::common::{altered, campaign, shipped_campaigns, simulate, tables};
 use polars::prelude::DataType;
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::{Campaign, Distribution, FaultKind, FaultTarget};
@@ -47,8 +47,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[test]
 fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_20_and_pid_tuned_by_7_to_10_and_never_fails() {
     // An independent run of these draws gave 19.0 and 7.6 as medians over channels.
-    let mut campaign = campaign("uav-paper");
-    campaign.episodes = 256;
+    let campaign = campaign("uav-paper").with_episodes(256).unwrap();
     let against_pid = channel_ratios(&campaign, "ftc", "pid");
     let against_tuned = channel_ratios(&campaign, "ftc", "pid-tuned");
     println!("ftc/pid {against_pid:.2?}\nftc/pid-tuned {against_tuned:.2?}");
@@ -70,8 +69,7 @@ fn val_on_uav_paper_the_ftc_beats_pid_by_15_to_20_and_pid_tuned_by_7_to_10_and_n
 
 #[test]
 fn on_biped_paper_the_ftc_beats_pid_by_more_than_20_and_never_fails() {
-    let mut campaign = campaign("biped-paper");
-    campaign.episodes = 64;
+    let campaign = campaign("biped-paper").with_episodes(64).unwrap();
     let against_pid = channel_ratios(&campaign, "ftc", "pid");
     println!("ftc/pid {against_pid:.2?}");
     assert!(median(against_pid.clone()) > 20.0, "{against_pid:?}");
@@ -81,8 +79,7 @@ fn on_biped_paper_the_ftc_beats_pid_by_more_than_20_and_never_fails() {
 
 #[test]
 fn without_faults_and_from_a_zero_observer_the_ftc_loses_to_pid_tuned() {
-    let mut campaign = campaign("no-fault");
-    campaign.episodes = 64;
+    let campaign = campaign("no-fault").with_episodes(64).unwrap();
     for ratio in channel_ratios(&campaign, "ftc", "pid-tuned") {
         assert!(
             (0.5..0.8).contains(&ratio),
@@ -91,9 +88,9 @@ fn without_faults_and_from_a_zero_observer_the_ftc_loses_to_pid_tuned() {
         );
     }
     // Its observer peaks: it spends several times the effort of the plain PID.
-    let flown = fly(&campaign, Precision::F32);
+    let simulated = simulate(&campaign, Precision::F32);
     let effort = |controller: usize| {
-        flown
+        simulated
             .iter()
             .flat_map(|f| {
                 f.outcomes[controller]
@@ -107,8 +104,7 @@ fn without_faults_and_from_a_zero_observer_the_ftc_loses_to_pid_tuned() {
 
 #[test]
 fn uav_physical_shows_failure_rates_with_intervals() {
-    let mut campaign = campaign("uav-physical");
-    campaign.episodes = 128;
+    let campaign = campaign("uav-physical").with_episodes(128).unwrap();
     let tables = tables(&campaign, Precision::F32);
     let rows = summarise(&campaign, &tables.scores);
     for controller in ["ftc", "pid", "pid-tuned"] {
@@ -121,10 +117,10 @@ fn uav_physical_shows_failure_rates_with_intervals() {
             "{controller}: {} of {}, {:?}",
             failures.failed(),
             failures.n,
-            failures.wilson
+            failures.interval
         );
         assert_eq!(failures.n, 128);
-        let wilson = failures.wilson.unwrap();
+        let wilson = failures.interval.unwrap();
         assert!(wilson.lower <= failures.rate() && failures.rate() <= wilson.upper);
         assert!(
             failures.rate() < 0.1,
@@ -157,11 +153,10 @@ fn single_precision_stays_within_the_contract_over_all_episodes_that_do_not_fail
         "biped-ground-reaction",
         "biped-berkeley",
     ] {
-        let mut campaign = campaign(name);
-        campaign.episodes = 24;
+        let campaign = campaign(name).with_episodes(24).unwrap();
         let (double, single) = (
-            fly(&campaign, Precision::F64),
-            fly(&campaign, Precision::F32),
+            simulate(&campaign, Precision::F64),
+            simulate(&campaign, Precision::F32),
         );
         let (mut worst_max, mut worst_rmse, mut compared) = (0.0_f64, 0.0_f64, 0);
         for (double, single) in double.iter().zip(&single) {
@@ -262,12 +257,13 @@ fn an_agent_that_diverges_leaves_those_alone_that_are_not_coupled_to_it() {
             "disturbance.+={ kind = \"constant\", amplitude = 1e37 }",
         ],
     );
-    let mut struck = campaign.clone();
-    struck.disturbances[1].parameters[0].distributions[6..].fill(Distribution::Constant(0.0));
+    let struck = campaign.clone().with(|own| {
+        own.disturbances[1].parameters[0].distributions[6..].fill(Distribution::Constant(0.0));
+    });
     let (mut diverged, mut spared) = (0, 0);
-    for flown in fly(&struck, Precision::F32) {
-        let kappa = flown.episode.agents[0].kappa;
-        for outcomes in flown.outcomes {
+    for simulated in simulate(&struck, Precision::F32) {
+        let kappa = simulated.episode.agents[0].kappa;
+        for outcomes in simulated.outcomes {
             diverged += usize::from(outcomes[0].diverged);
             if kappa == 0.0 {
                 assert!(!outcomes[1].diverged && !outcomes[2].diverged);

@@ -41,13 +41,22 @@ pub(crate) fn altered_file(file: &str, changes: &[&str]) -> Campaign {
     Campaign::load_with(&repository(file), &overlay).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Has a failure say which campaigns its test has asked for, as commands that fly them.
+/// A campaign that [`altered`] or this has made, with further changes laid over it.
+pub(crate) fn further(base: &Campaign, changes: &[&str]) -> Campaign {
+    let overlay = [&base.overlay[..], &settings(changes)].concat();
+    let file = base.path.strip_prefix(repository("")).unwrap_or(&base.path);
+    named_if_a_test_fails(&file.display().to_string(), &overlay);
+    Campaign::parse_with(&base.text, &base.path, &overlay).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Has a failure say which campaigns its test has asked for, as commands that run them. What
+/// a test changes in a parsed campaign (`Campaign::with`) is not in them.
 fn named_if_a_test_fails(file: &str, overlay: &[Setting]) {
     thread_local! {
         static ASKED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
     }
-    static TOLD: Once = Once::new();
-    TOLD.call_once(|| {
+    static HOOK_SET: Once = Once::new();
+    HOOK_SET.call_once(|| {
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
             usual(panic);
@@ -128,22 +137,22 @@ pub(crate) fn gains(campaign: &Campaign) -> &'static GainSet {
 }
 
 /// Flies a campaign with its own gains on the widest lanes.
-pub(crate) fn fly(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
+pub(crate) fn simulate(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
     let gains = gains(campaign);
-    Cpu::new(campaign, &gains.loops(), precision, None).fly(0..campaign.episodes, &|_| ())
+    Cpu::new(campaign, &gains.loops(), precision, None).simulate(0..campaign.episodes, &|_| ())
 }
 
 /// The tables of a campaign.
 pub(crate) fn tables(campaign: &Campaign, precision: Precision) -> Tables {
     let mut tables = Tables::new(campaign);
-    for flown in fly(campaign, precision) {
-        tables.add(campaign, &flown);
+    for simulated in simulate(campaign, precision) {
+        tables.add(campaign, &simulated);
     }
     tables
 }
 
-/// Name of the adapter: hardware if there is any, else the first; none where there is none and none is required, and none
-/// under URTS_REQUIRE_GPU=0.
+/// Name of the adapter: hardware if there is any, else the first; none where there is none and none is required, and
+/// none under URTS_REQUIRE_GPU=0.
 pub(crate) fn adapter_or_skip() -> Option<String> {
     if std::env::var("URTS_REQUIRE_GPU").as_deref() == Ok("0") {
         println!("SKIPPED: no adapter is wanted");

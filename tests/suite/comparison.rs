@@ -6,7 +6,7 @@ use urts_mc::random::philox::{Address, Stream};
 use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::sensitivity::worst;
 use urts_mc::results::{
-    compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
+    RateMethod, compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
 };
 
 /// One UAV under two controllers; episodes take turns: an actuator fault, a sensor fault, none.
@@ -125,7 +125,7 @@ fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
         let mut rows = summary.iter().map(|row| &row.failures);
         let row = rows.find(|row| row.controller == controller && &*row.stratum == stratum);
         let row = row.unwrap();
-        assert!(row.wilson.is_some() && row.sequential.is_none() && row.replicates.is_none());
+        assert!(row.method == RateMethod::Wilson && row.interval.is_some());
         (row.failed(), row.n)
     };
     assert_eq!(failed("ftc", "all"), (2, 30));
@@ -133,21 +133,16 @@ fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
     assert_eq!(failed("pid", "sensor smoothed-square"), (5, 10));
     assert_eq!(failed("pid", "none"), (0, 10));
     // Two controllers, four parts, two groups, two metrics: nothing else is a part.
-    assert_eq!(
-        summary_table(&campaign, &summary)
-            .to_frame()
-            .unwrap()
-            .height(),
-        32
-    );
+    assert_eq!(summary_table(&summary).to_frame().unwrap().height(), 32);
     // Of 10 without failure the bound is 1 - 0.05^(1/10) = 0.26, of 2 in 30 it is 0.20.
     let results = requirements(&campaign, &scores);
     assert_eq!(results.len(), 2);
     assert!(results.iter().all(|result| result.is_met()), "{results:?}");
-    let mut strict = campaign.clone();
-    for requirement in &mut strict.requirements {
-        requirement.failure_rate_upper_95 = 0.25;
-    }
+    let strict = campaign.clone().with(|own| {
+        for requirement in &mut own.requirements {
+            requirement.failure_rate_upper_95 = 0.25;
+        }
+    });
     let results = requirements(&strict, &scores);
     let [none, all] = results.as_slice() else {
         panic!("{results:?}");
@@ -343,8 +338,7 @@ fn the_verdict_says_who_is_better_and_only_where_an_interval_leaves_no_doubt() {
 
 #[test]
 fn the_verdict_on_one_episode_claims_nothing_of_others() {
-    let mut campaign = campaign(3);
-    (campaign.episodes, campaign.strata) = (1, Strata::default());
+    let campaign = campaign(3).with(|own| (own.episodes, own.strata) = (1, Strata::default()));
     let scores = scores(&campaign, |controller, _| {
         (
             [Status::Ok, Status::Exceeded][controller],
@@ -363,8 +357,7 @@ fn the_verdict_on_one_episode_claims_nothing_of_others() {
 
 #[test]
 fn a_single_controller_has_a_verdict_of_its_own() {
-    let mut campaign = campaign(30);
-    campaign.controllers.truncate(1);
+    let campaign = campaign(30).with(|own| own.controllers.truncate(1));
     let scores = scores(&campaign, |_, _| (Status::Ok, 0.01));
     let said = verdict(&summarise(&campaign, &scores), &[]);
     // 1 - 0.05^(1/30) = 0.09503, and a bound is never rounded down.
@@ -417,8 +410,7 @@ fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_f
 #[test]
 fn four_episodes_do_not_make_a_verdict() {
     // Four failures against none in four pairs: the interval excludes 0, McNemar's mid-p of 0.0625 does not.
-    let mut campaign = campaign(6);
-    (campaign.episodes, campaign.strata) = (4, Strata::default());
+    let campaign = campaign(6).with(|own| (own.episodes, own.strata) = (4, Strata::default()));
     let scores = scores(&campaign, |controller, episode| {
         let fails = controller == 1 && episode < 4;
         (if fails { Status::Exceeded } else { Status::Ok }, 0.01)
@@ -433,8 +425,7 @@ fn four_episodes_do_not_make_a_verdict() {
 
 #[test]
 fn two_flights_that_diverge_have_no_errors_to_compare() {
-    let mut campaign = campaign(3);
-    (campaign.episodes, campaign.strata) = (1, Strata::default());
+    let campaign = campaign(3).with(|own| (own.episodes, own.strata) = (1, Strata::default()));
     let scores = scores(&campaign, |_, _| (Status::Diverged, f64::NAN));
     let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
     assert!(

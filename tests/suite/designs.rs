@@ -208,7 +208,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         // Rates 0/8 to 7/8: mean 3.5/8, standard error sqrt(6/8)/8; Student's t of 7 degrees of freedom at 95 % is
         // 2.364624.
         let rate = &summary[0].failures;
-        let t = rate.replicates.unwrap();
+        let t = rate.interval.unwrap();
         let half_width = 2.364_624 * 0.75_f64.sqrt() / 8.0;
         assert!((t.lower - (0.4375 - half_width)).abs() < 1e-6, "{t:?}");
         assert!((t.upper - (0.4375 + half_width)).abs() < 1e-6, "{t:?}");
@@ -227,7 +227,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
             comparisons[0].known().unwrap().interval,
             Some(found.estimate.interval)
         );
-        assert!((found.estimate.interval.lower - rate.replicates.unwrap().lower).abs() < 1e-12);
+        assert!((found.estimate.interval.lower - rate.interval.unwrap().lower).abs() < 1e-12);
         assert!((found.p - 0.004_926).abs() < 5e-6, "{}", found.p);
         // A controller that never fails shows no scatter, which proves nothing.
         let of_all = || {
@@ -236,7 +236,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
                 .map(|row| &row.failures)
                 .filter(|rate| &*rate.stratum == "all")
         };
-        assert!(of_all().all(|rate| rate.replicates.is_some() == (rate.controller == "ftc")));
+        assert!(of_all().all(|rate| rate.interval.is_some() == (rate.controller == "ftc")));
 
         // Student's t decides, at 5 % over the three things that are looked at: 0.005 is enough.
         let said = verdict(&summary, &comparisons);
@@ -260,7 +260,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         );
         assert!(!said.contains("no clear difference"), "{said}");
 
-        let summary = summary_table(&campaign, &summary);
+        let summary = summary_table(&summary);
         let comparison = comparison_table(&campaign, &comparisons);
         let ranking = ranking_table(&rank(&campaign, &scores));
         for (table, names) in [
@@ -318,13 +318,12 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
     assert!(tested("latin-hypercube", 1) && !tested("latin-hypercube", 8) && !tested("sobol", 1));
     let few = sampled("sobol", 4, 64);
     let rates = summarise(&few, &scores_of("sobol", 4));
-    assert!(rates.iter().all(|row| row.failures.replicates.is_none()));
+    assert!(rates.iter().all(|row| row.failures.interval.is_none()));
 }
 
 #[test]
 fn the_replicate_is_a_column_and_an_episode_of_a_design_is_replayed() {
-    let mut campaign = sampled("latin-hypercube", 8, 16);
-    campaign.time.steps = 1500;
+    let campaign = sampled("latin-hypercube", 8, 16).with(|own| own.time.steps = 1500);
     let frame = tables(&campaign, Precision::F32)
         .episodes
         .to_frame()

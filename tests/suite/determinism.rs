@@ -99,7 +99,7 @@ fn same<T: std::fmt::Debug + ?Sized>(a: &T, b: &T) -> bool {
     format!("{a:?}") == format!("{b:?}")
 }
 
-fn fly(
+fn simulate(
     campaign: &Campaign,
     simd: Option<Simd>,
     threads: usize,
@@ -111,7 +111,7 @@ fn fly(
         .num_threads(threads)
         .build()
         .unwrap();
-    pool.install(|| cpu.fly(0..campaign.episodes, &|_| ()))
+    pool.install(|| cpu.simulate(0..campaign.episodes, &|_| ()))
 }
 
 fn files(
@@ -188,8 +188,7 @@ fn same_bytes(campaign: &Campaign) {
         }
     }
     // The comparison can fail: another seed must show in both big tables.
-    let mut other = campaign.clone();
-    other.seed += 1;
+    let other = campaign.clone().with_seed(campaign.seed + 1);
     let changed = files(&other, 1, Some(Simd::Avx2), Precision::F32);
     for (name, content) in reference {
         let same = changed
@@ -202,11 +201,13 @@ fn same_bytes(campaign: &Campaign) {
 #[test]
 fn the_first_episodes_of_a_longer_run_equal_a_shorter_one() {
     for long in everything() {
-        let mut short = long.clone();
-        short.episodes = 10;
-        let all = fly(&long, None, 2, Precision::F32);
+        let short = long.clone().with_episodes(10).unwrap();
+        let all = simulate(&long, None, 2, Precision::F32);
         assert_eq!(all.len(), 37);
-        assert!(same(&all[..10], &fly(&short, None, 2, Precision::F32)[..]));
+        assert!(same(
+            &all[..10],
+            &simulate(&short, None, 2, Precision::F32)[..]
+        ));
         assert!(all[0].outcomes != all[1].outcomes, "episodes differ");
     }
 }
@@ -216,8 +217,8 @@ fn a_range_of_episodes_flies_the_same_whatever_block_it_begins_in() {
     for campaign in everything() {
         let gains = gains(&campaign);
         let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F32, None);
-        let all = cpu.fly(0..37, &|_| ());
-        assert!(same(&cpu.fly(5..23, &|_| ())[..], &all[5..23]));
+        let all = cpu.simulate(0..37, &|_| ());
+        assert!(same(&cpu.simulate(5..23, &|_| ())[..], &all[5..23]));
     }
 }
 
@@ -227,11 +228,10 @@ fn all_controllers_of_an_episode_meet_the_same_draws() {
 }
 
 fn same_draws(campaign: &Campaign) {
-    let mut reversed = campaign.clone();
-    reversed.controllers.reverse();
+    let reversed = campaign.clone().with(|own| own.controllers.reverse());
     let (forward, backward) = (
-        fly(campaign, None, 1, Precision::F32),
-        fly(&reversed, None, 1, Precision::F32),
+        simulate(campaign, None, 1, Precision::F32),
+        simulate(&reversed, None, 1, Precision::F32),
     );
     for (a, b) in forward.iter().zip(&backward) {
         assert!(a.episode == b.episode);
@@ -258,7 +258,7 @@ fn same_metrics(campaign: &Campaign) {
             &|_| (),
         )
         .unwrap();
-        let flown = fly(campaign, None, 1, precision);
+        let simulated = simulate(campaign, None, 1, precision);
         for (episode, controller) in [(0, "ftc"), (21, "pid"), (36, "pid-tuned")] {
             let replayed = replay(out.path(), episode, controller, None).unwrap();
             let index = campaign
@@ -267,7 +267,10 @@ fn same_metrics(campaign: &Campaign) {
                 .position(|name| name == controller)
                 .unwrap();
             assert!(
-                same(&replayed.outcomes, &flown[episode as usize].outcomes[index]),
+                same(
+                    &replayed.outcomes,
+                    &simulated[episode as usize].outcomes[index]
+                ),
                 "{precision:?} {episode} {controller}"
             );
             assert_eq!(replayed.snapshots.len(), 451);

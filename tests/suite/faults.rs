@@ -71,8 +71,8 @@ fn flight(campaign: &Campaign) -> Vec<Vec<Vec<ChannelSample>>> {
 
 /// What channel x of the first agent shows.
 fn of_x(more: &str) -> Vec<ChannelSample> {
-    let flown = flight(&campaign(more));
-    flown.into_iter().map(|agents| agents[0][X]).collect()
+    let simulated = flight(&campaign(more));
+    simulated.into_iter().map(|agents| agents[0][X]).collect()
 }
 
 /// The command that a channel of translation wanted: m e'' = u + F - K v - m r'' and u_wanted = m (r'' + told) + K r',

@@ -10,7 +10,9 @@ use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;
 use urts_mc::run::{Extras, Progress, run_on};
 use urts_mc::simulation::cross_check::cross_check;
-use urts_mc::simulation::{Backend, Engine, RunOptions, Segment, Simulation, SimulationError, fly};
+use urts_mc::simulation::{
+    Backend, Engine, RunOptions, Segment, Simulation, SimulationError, simulate,
+};
 
 /// 24 short episodes.
 fn short() -> Campaign {
@@ -37,7 +39,7 @@ fn fly_and_lose(
     let campaign = short();
     let gains = gains(&campaign);
     let told = AtomicU32::new(0);
-    let flight = fly(
+    let flight = simulate(
         &campaign,
         gains,
         &in_batches_of_eight(backend),
@@ -58,15 +60,15 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others()
     let (flight, told) = fly_and_lose(&gpu, Backend::Auto, 12);
     let flight = flight.unwrap();
     assert_eq!(told, 24, "every episode is told of once");
-    let legs: Vec<(u32, u32, bool)> = flight
-        .legs
+    let segments: Vec<(u32, u32, bool)> = flight
+        .segments
         .iter()
-        .map(|leg| {
-            let on_gpu = matches!(leg.engine, Engine::Gpu { .. });
-            (leg.first, leg.episodes, on_gpu)
+        .map(|segment| {
+            let on_gpu = matches!(segment.engine, Engine::Gpu { .. });
+            (segment.first, segment.episodes, on_gpu)
         })
         .collect();
-    assert_eq!(legs, [(0, 8, true), (8, 16, false)]);
+    assert_eq!(segments, [(0, 8, true), (8, 16, false)]);
     assert_eq!(flight.interrupted, None);
     let note = &flight.notes[0];
     assert!(note.contains("failed after 8 of 24 episodes"), "{note}");
@@ -78,7 +80,7 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_flies_the_others()
     // Both backends give nearly the same numbers, so the table is that of one flight.
     let campaign = short();
     let gains = gains(&campaign);
-    let whole = fly(
+    let whole = simulate(
         &campaign,
         gains,
         &RunOptions::cpu(Precision::F32),
@@ -138,7 +140,7 @@ fn a_gpu_that_is_lost_ends_the_run_that_asked_for_it_and_the_finished_batches_ar
     assert_eq!(manifest.episodes_asked, 24);
     let rows = std::fs::read_to_string(out.path().join("episodes.csv")).unwrap();
     assert_eq!(rows.lines().count(), 1 + 8 * 3 * 3);
-    assert_eq!(findings.summary[0].failures.n, 8);
+    assert_eq!(findings.results.summary[0].failures.n, 8);
 }
 
 #[test]
@@ -177,10 +179,10 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let campaign = short();
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let mut flight = fly(&campaign, gains, &options, None, &|_| ()).unwrap();
+    let mut flight = simulate(&campaign, gains, &options, None, &|_| ()).unwrap();
     let check = |flight: &Simulation| {
-        let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-        cross_check(&campaign, gains, &options, leg, scores, None, 24).unwrap()
+        let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
+        cross_check(&campaign, gains, &options, segment, scores, None, 24).unwrap()
     };
     let sound = check(&flight);
     assert!(sound.holds() && sound.compared > 24, "{sound:?}");
@@ -201,14 +203,14 @@ fn a_flight_whose_every_difference_grows_is_left_out_of_the_cross_check() {
     let campaign = altered("uav-faults", &["episodes=120"]);
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let flight = fly(&campaign, gains, &options, None, &|_| ()).unwrap();
-    let leg = Segment {
+    let flight = simulate(&campaign, gains, &options, None, &|_| ()).unwrap();
+    let segment = Segment {
         first: 112,
         episodes: 8,
-        ..flight.legs[0].clone()
+        ..flight.segments[0].clone()
     };
     let scores = &flight.tables.scores;
-    let check = cross_check(&campaign, gains, &options, &leg, scores, None, 8).unwrap();
+    let check = cross_check(&campaign, gains, &options, &segment, scores, None, 8).unwrap();
     assert!(check.holds() && check.sensitive == 2, "{check:?}");
     assert!(check.compared > 12, "{check:?}");
 }
@@ -225,7 +227,10 @@ fn a_gpu_that_flies_nothing_is_an_error_unless_the_cpu_may_fly() {
     assert_eq!(told, 0);
     let (flight, told) = fly_and_lose(&gpu, Backend::Auto, u32::MAX);
     let flight = flight.unwrap();
-    assert_eq!((flight.episodes(), told, flight.legs.len()), (24, 24, 1));
+    assert_eq!(
+        (flight.episodes(), told, flight.segments.len()),
+        (24, 24, 1)
+    );
     assert!(
         flight.notes[0].contains("after 0 of 24"),
         "{:?}",
@@ -250,14 +255,14 @@ fn a_run_tells_its_phases_in_order_and_every_episode_once() {
     )
     .unwrap();
     let told = told.into_inner().unwrap();
-    let flown = |at: &Progress| match at {
+    let simulated = |at: &Progress| match at {
         Progress::Simulated(episodes) => *episodes,
         _ => 0,
     };
-    assert_eq!(told.iter().map(flown).sum::<u32>(), campaign.episodes);
+    assert_eq!(told.iter().map(simulated).sum::<u32>(), campaign.episodes);
     let (first, rest) = told.split_at(2);
     assert_eq!(first, [Progress::Gains, Progress::Simulation]);
-    let after: Vec<&Progress> = rest.iter().skip_while(|at| flown(at) > 0).collect();
+    let after: Vec<&Progress> = rest.iter().skip_while(|at| simulated(at) > 0).collect();
     assert_eq!(
         after,
         [

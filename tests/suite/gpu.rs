@@ -21,7 +21,7 @@ mod mutations;
 mod parity;
 mod spans;
 
-use crate::common::{altered, altered_file, settings};
+use crate::common::{altered, altered_file, further};
 use urts_mc::agent::Agent;
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning};
@@ -122,14 +122,14 @@ rate = { uniform = [200.0, 600.0] }
 /// Everything at once that bipeds can meet. Their joints are damped, which those of the robots that are shipped are
 /// not.
 fn mixed_biped(changes: &[&str]) -> Campaign {
-    let mut campaign = gpu_campaign("mixed_biped", changes);
-    if let Agent::Biped(biped) = &mut campaign.agent {
-        let joints = biped.robot.legs.iter_mut().flat_map(|leg| &mut leg.joints);
-        for (j, joint) in (1_u8..).zip(joints) {
-            joint.damping_n_m_s = 0.02 * f64::from(j);
+    gpu_campaign("mixed_biped", changes).with(|campaign| {
+        if let Agent::Biped(biped) = &mut campaign.agent {
+            let joints = biped.robot.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+            for (j, joint) in (1_u8..).zip(joints) {
+                joint.damping_n_m_s = 0.02 * f64::from(j);
+            }
         }
-    }
-    campaign
+    })
 }
 
 /// [`mixed`] with thrust along the body axis.
@@ -160,13 +160,14 @@ fn mixed_thrust(changes: &[&str]) -> Campaign {
 
 /// The same with another number of UAVs, all of which have one reference.
 fn team_of(base: &Campaign, team: usize) -> Campaign {
-    let larger = settings(&[
-        &format!("agent.team={team}"),
-        "reference.agents=",
-        "reference.center=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0]",
-    ]);
-    let overlay = [&base.overlay[..], &larger].concat();
-    let campaign = Campaign::parse_with(&base.text, &base.path, &overlay).unwrap();
+    let campaign = further(
+        base,
+        &[
+            &format!("agent.team={team}"),
+            "reference.agents=",
+            "reference.center=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0]",
+        ],
+    );
     assert_eq!(campaign.team, team);
     campaign
 }
@@ -195,22 +196,24 @@ const ALIKE: [&str; 3] = [
 ];
 
 /// Flies a campaign batch by batch.
-fn fly_all(
-    flyer: &mut GpuSimulator<'_>,
+fn simulate_all(
+    simulator: &mut GpuSimulator<'_>,
     campaign: &Campaign,
 ) -> Result<Vec<EpisodeResult>, GpuError> {
-    let mut flown = Vec::new();
+    let mut simulated = Vec::new();
     let mut first = 0;
     while first < campaign.episodes {
-        let next = first.saturating_add(flyer.batch()).min(campaign.episodes);
-        flown.extend(flyer.fly(first..next, &|_| ())?);
+        let next = first
+            .saturating_add(simulator.batch())
+            .min(campaign.episodes);
+        simulated.extend(simulator.simulate(first..next, &|_| ())?);
         first = next;
     }
-    Ok(flown)
+    Ok(simulated)
 }
 
 /// Flies a campaign on the GPU.
-fn fly(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<EpisodeResult> {
-    let mut flyer = GpuSimulator::new(gpu, campaign, gains, tuning).unwrap();
-    fly_all(&mut flyer, campaign).unwrap()
+fn simulate(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<EpisodeResult> {
+    let mut simulator = GpuSimulator::new(gpu, campaign, gains, tuning).unwrap();
+    simulate_all(&mut simulator, campaign).unwrap()
 }

@@ -4,7 +4,8 @@
 mod graph;
 
 use crate::common::repository;
-use graph::Graph;
+use graph::{Graph, uses};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +15,8 @@ const MOST_LINES_OF_A_FILE: usize = 450;
 const MOST_LINES_OF_A_FUNCTION: usize = 80;
 /// Columns of a comment.
 const WIDEST_COMMENT: usize = 120;
-/// Unrolled arithmetic says with these words, in the lines before it, why it is in one piece.
+/// Arithmetic that is compared with its twin statement by statement says with these words, in the lines before it, why
+/// it is not split.
 const EXCUSE: &str = "in one piece";
 
 /// A source file: its module path (`["model", "episode"]`) and its text.
@@ -33,6 +35,13 @@ fn the_rooms_are_at_most_sixteen_and_use_only_those_before_them() {
         "{} rooms: {rooms:?}",
         rooms.len()
     );
+    // What is listed is what there is.
+    let folders = fs::read_dir(repository("src")).unwrap();
+    let folders = folders.map(|entry| entry.unwrap().path());
+    let folders = folders.filter(|path| path.is_dir());
+    let name = |path: PathBuf| path.file_name().unwrap().display().to_string();
+    let there: BTreeSet<String> = folders.map(name).collect();
+    assert_eq!(there, rooms.iter().cloned().collect());
     let sources = sources();
     let upward: Vec<String> = sources
         .iter()
@@ -44,12 +53,13 @@ fn the_rooms_are_at_most_sixteen_and_use_only_those_before_them() {
         upward.join("\n")
     );
     // The text is really read: the higher rooms use the ground floor.
-    let uses = |room: &str| {
+    let used = |room: &str| {
+        let of_room = |path: &Vec<String>| path.first().is_some_and(|first| first == room);
         sources
             .iter()
-            .any(|source| imports(source).any(|path| path[0] == room))
+            .any(|source| uses(source, &BTreeSet::new()).iter().any(of_room))
     };
-    assert!(uses("util") && uses("campaign") && uses("results"));
+    assert!(used("util") && used("campaign") && used("results"));
 }
 
 #[test]
@@ -64,6 +74,7 @@ fn an_arrow_that_leads_upwards_would_be_noticed() {
         "use crate::campaign::Campaign;",
         "    let campaign = crate::campaign::load();",
         "use crate::{agent::Uav, campaign::Campaign};",
+        "use crate::{\n    agent::Uav,\n    campaign::{Campaign},\n};",
     ] {
         assert_eq!(upward(&rooms, &source(text)).len(), 1, "{text}");
     }
@@ -116,6 +127,13 @@ fn a_circle_of_files_would_be_noticed() {
         ),
         2
     );
+    assert_eq!(
+        circles(
+            parent("use robot::*;\npub struct Uav;"),
+            child("use super::Uav;")
+        ),
+        2
+    );
     // A name that is passed on leads past the parent.
     let passes_on = "mod leg;\nmod robot;\npub use leg::Leg;\npub use robot::Robot;";
     assert_eq!(
@@ -154,40 +172,81 @@ fn every_shader_names_the_source_that_it_is_the_twin_of() {
 
 #[test]
 fn files_functions_and_comments_have_a_size_that_can_be_read_at_once() {
-    let mut wrong = Vec::new();
+    let (mut wrong, mut seen) = (Vec::new(), 0);
     for source in sources() {
-        let place = source.path.display();
-        let lines: Vec<&str> = source.text.lines().collect();
-        if lines.len() > MOST_LINES_OF_A_FILE {
-            wrong.push(format!("{place}: {} lines", lines.len()));
-        }
-        for (number, line) in lines.iter().enumerate() {
-            let is_comment = line.trim_start().starts_with("//");
-            // What has no place to break is an address or a table's row.
-            let breaks = !line.contains("http") && !line.trim_start().starts_with("//! |");
-            if is_comment && breaks && line.chars().count() > WIDEST_COMMENT {
-                wrong.push(format!(
-                    "{place}:{}: a comment of {} columns",
-                    number + 1,
-                    line.chars().count()
-                ));
-            }
-        }
-        for (first, length) in functions(&lines) {
-            let before = lines[first.saturating_sub(12)..first].iter();
-            let excused = before
-                .rev()
-                .take_while(|line| !line.starts_with('}'))
-                .any(|line| line.to_lowercase().contains(EXCUSE));
-            if length > MOST_LINES_OF_A_FUNCTION && !excused {
-                wrong.push(format!(
-                    "{place}:{}: a function of {length} lines",
-                    first + 1
-                ));
-            }
-        }
+        let place = source.path.display().to_string();
+        seen += functions(&source.text.lines().collect::<Vec<_>>()).len();
+        wrong.extend(too_long(&place, &source.text));
+        wrong.extend(too_wide(&place, &source.text, "//"));
+    }
+    assert!(seen > 500, "{seen} functions");
+    let tests = ["tests", "shaders"].map(repository);
+    let others = tests.iter().flat_map(|folder| {
+        let wgsl = files(folder, "wgsl");
+        files(folder, "rs").into_iter().chain(wgsl)
+    });
+    let others = others.map(|path| (path, "//"));
+    let scripts = [".ci/run", "tests/run", "Cargo.toml", ".cargo/deny.toml"];
+    let scripts = scripts.map(|path| (repository(path), "#"));
+    for (path, mark) in others.chain(scripts) {
+        let text = fs::read_to_string(&path).unwrap();
+        wrong.extend(too_wide(&path.display().to_string(), &text, mark));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_cannot_be_read_at_once_would_be_noticed() {
+    let function = |lines: usize| {
+        format!(
+            "fn f(\n    a: f64,\n) {{\n{}}}\n",
+            "    g();\n".repeat(lines - 4)
+        )
+    };
+    assert!(too_long("f", &function(80)).is_empty());
+    assert_eq!(too_long("f", &function(81)).len(), 1);
+    let within_where = function(81).replace(") {", ")\nwhere\n    f64: Copy,\n{");
+    assert_eq!(too_long("f", &within_where).len(), 1);
+    let excused = format!("// In one piece: as its twin.\n{}", function(81));
+    assert!(too_long("f", &excused).is_empty());
+    assert_eq!(too_long("f", &"\n".repeat(451)).len(), 1);
+    let comment = |columns: usize| format!("    // {}\n", "a".repeat(columns - 7));
+    assert!(too_wide("f", &comment(120), "//").is_empty());
+    assert_eq!(too_wide("f", &comment(121), "//").len(), 1);
+}
+
+/// What of a file is longer than can be read at once.
+fn too_long(place: &str, text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut wrong = Vec::new();
+    if lines.len() > MOST_LINES_OF_A_FILE {
+        wrong.push(format!("{place}: {} lines", lines.len()));
+    }
+    for (first, length) in functions(&lines) {
+        let before = lines[first.saturating_sub(12)..first].iter();
+        let excused = before
+            .rev()
+            .take_while(|line| !line.starts_with('}'))
+            .any(|line| line.to_lowercase().contains(EXCUSE));
+        if length > MOST_LINES_OF_A_FUNCTION && !excused {
+            let line = first + 1;
+            wrong.push(format!("{place}:{line}: a function of {length} lines"));
+        }
+    }
+    wrong
+}
+
+/// The comments of a file that are wider than [`WIDEST_COMMENT`]. What has no place to break is an address or a table's
+/// row.
+fn too_wide(place: &str, text: &str, mark: &str) -> Vec<String> {
+    let comments = text.lines().enumerate().filter(|(_, line)| {
+        let line = line.trim_start();
+        line.starts_with(mark) && !line.contains("http") && !line.starts_with("//! |")
+    });
+    let wide = comments.map(|(number, line)| (number + 1, line.chars().count()));
+    wide.filter(|(_, columns)| *columns > WIDEST_COMMENT)
+        .map(|(number, columns)| format!("{place}:{number}: a comment of {columns} columns"))
+        .collect()
 }
 
 /// The rooms in their order: the modules of `lib.rs`, then the program's.
@@ -235,50 +294,13 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// What of the crate a file names outside of comments: paths from the root, at least the room.
-fn imports(source: &Source) -> impl Iterator<Item = Vec<String>> + '_ {
-    let lines = source
-        .text
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"));
-    lines.flat_map(|line| {
-        ["crate::", "urts_mc::"].into_iter().flat_map(move |root| {
-            line.match_indices(root).flat_map(move |(at, _)| {
-                let rest = &line[at + root.len()..];
-                let names: Vec<&str> = match rest.strip_prefix('{') {
-                    // One level of braces at the root: the first name of each of its parts.
-                    Some(list) => list.split(',').collect(),
-                    None => vec![rest],
-                };
-                names
-                    .into_iter()
-                    .filter_map(first_names)
-                    .collect::<Vec<_>>()
-            })
-        })
-    })
-}
-
-/// The names of a path that begins a text.
-fn first_names(text: &str) -> Option<Vec<String>> {
-    let end = text
-        .trim_start()
-        .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':'));
-    let path = &text.trim_start()[..end.unwrap_or(text.trim_start().len())];
-    let names: Vec<String> = path
-        .split("::")
-        .filter(|name| !name.is_empty())
-        .map(String::from)
-        .collect();
-    (!names.is_empty()).then_some(names)
-}
-
 /// The arrows of a file that lead to a room after its own.
 fn upward(rooms: &[String], source: &Source) -> Vec<String> {
     let place = |name: &str| rooms.iter().position(|room| room == name);
     let own = place(&source.module[0]);
-    imports(source)
-        .filter(|path| place(&path[0]) > own)
+    uses(source, &BTreeSet::new())
+        .into_iter()
+        .filter(|path| path.first().is_some_and(|room| place(room) > own))
         .map(|path| format!("{}: {}", source.path.display(), path.join("::")))
         .collect()
 }
@@ -301,8 +323,8 @@ fn functions(lines: &[&str]) -> Vec<(usize, usize)> {
     for (first, line) in lines.iter().enumerate().filter(|(_, line)| begins(line)) {
         let indent = &line[..line.len() - line.trim_start().len()];
         let in_column = |line: &&str| {
-            line.strip_prefix(indent)
-                .is_some_and(|rest| !rest.starts_with([' ', ')']))
+            let rest = line.strip_prefix(indent).unwrap_or(" ");
+            !rest.starts_with([' ', ')', '>', '{']) && rest != "where"
         };
         // A function without a body, or with one on its own line, ends there.
         let after = lines[first + 1..]

@@ -4,10 +4,9 @@
 #![expect(unsafe_code, reason = "the routines under test take raw pointers")]
 
 use clarabel::algebra::{CscMatrix, FloatT};
+use clarabel::solver::SupportedConeT::{PSDTriangleConeT, ZeroConeT};
 use clarabel::solver::{
-    DefaultSettings, DefaultSettingsBuilder, DefaultSolution, DefaultSolver, IPSolver,
-    SolverStatus,
-    SupportedConeT::{PSDTriangleConeT, ZeroConeT},
+    DefaultSettings, DefaultSettingsBuilder, DefaultSolution, DefaultSolver, IPSolver, SolverStatus,
 };
 use nalgebra::{DMatrix, RealField};
 use urts_mc::synthesis::lapack::ensure_linked;

@@ -1,6 +1,6 @@
 //! The pieces of the episode loop: order of the integration, limits, noise, draws.
 
-use crate::common::{altered, campaign, fly, gains};
+use crate::common::{altered, campaign, gains, simulate};
 use urts_mc::backend::cpu::{Cpu, Precision, Simd};
 use urts_mc::campaign::Campaign;
 use urts_mc::draw::draw;
@@ -67,7 +67,7 @@ fn limits_cut_the_command_and_are_counted() {
     let free = altered("scenario-b", &["time.duration_s=13.0"]);
     for precision in [Precision::F64, Precision::F32] {
         let channels = |campaign: &Campaign| {
-            fly(campaign, precision).remove(0).outcomes[0][0]
+            simulate(campaign, precision).remove(0).outcomes[0][0]
                 .channels
                 .clone()
         };
@@ -278,12 +278,13 @@ fn draws_follow_their_distributions_and_who_shares_them() {
 fn an_unused_coupling_and_absent_faults_change_nothing() {
     // A loss of nothing, a disturbance of nothing and a coupling of nothing must not change a bit.
     let base = altered("smoke", &["coupling.kappa=0.0", "fault.0.magnitude=0.0"]);
-    let mut bare = base.clone();
-    bare.faults.remove(0);
+    let bare = base.clone().with(|own| {
+        own.faults.remove(0);
+    });
     let outcomes = |campaign: &Campaign| {
-        fly(campaign, Precision::F32)
+        simulate(campaign, Precision::F32)
             .into_iter()
-            .map(|flown| flown.outcomes)
+            .map(|simulated| simulated.outcomes)
             .collect::<Vec<_>>()
     };
     let metrics = |campaign: &Campaign| {
@@ -296,11 +297,11 @@ fn an_unused_coupling_and_absent_faults_change_nothing() {
             .collect::<Vec<_>>()
     };
     // The sensor fault is fault 1 in one campaign and fault 0 in the other, so it would be drawn anew: silence it.
-    let silent = |mut campaign: Campaign| {
-        campaign
-            .faults
-            .retain(|fault| fault.kind != urts_mc::campaign::FaultKind::SmoothedSquare);
-        campaign
+    let silent = |campaign: Campaign| {
+        campaign.with(|own| {
+            own.faults
+                .retain(|fault| fault.kind != urts_mc::campaign::FaultKind::SmoothedSquare);
+        })
     };
     assert_eq!(metrics(&silent(base)), metrics(&silent(bare)));
     assert_eq!(campaign("smoke").faults.len(), 2);

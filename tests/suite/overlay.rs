@@ -13,8 +13,8 @@ fn parsed(text: &str, overlay: &[&str]) -> Result<Campaign, CampaignError> {
 }
 
 /// All of a campaign but where it is from.
-fn content(mut campaign: Campaign) -> String {
-    (campaign.text, campaign.overlay) = (String::new(), Vec::new());
+fn content(campaign: Campaign) -> String {
+    let campaign = campaign.with(|own| (own.text, own.overlay) = (String::new(), Vec::new()));
     format!("{campaign:?}")
 }
 
@@ -290,27 +290,27 @@ fn a_text_that_is_no_setting_is_refused_with_what_would_be_one() {
         ("", "write key=value"),
         (
             "=3",
-            "\"\" is no key; write names and numbers with dots between",
+            "\"\" is not a key; write names and numbers with dots between",
         ),
-        ("agent..team=3", "\"agent..team\" is no key"),
-        ("agent.=3", "is no key"),
-        (".agent=3", "is no key"),
-        ("agent team=3", "is no key"),
-        ("fault[0=3", "is no key"),
-        ("fault[a]=3", "is no key"),
-        ("fault]0[=3", "is no key"),
-        ("fault[]=3", "is no key"),
-        ("agent.mass_kg=2 kg", "\"2 kg\" is no TOML value"),
-        ("agent.mass_kg=2kg", "\"2kg\" is no TOML value"),
-        ("agent.mass_kg=.5", "\".5\" is no TOML value"),
-        ("controllers=[ftc]", "\"[ftc]\" is no TOML value"),
-        ("name=\"a", "is no TOML value"),
+        ("agent..team=3", "\"agent..team\" is not a key"),
+        ("agent.=3", "is not a key"),
+        (".agent=3", "is not a key"),
+        ("agent team=3", "is not a key"),
+        ("fault[0=3", "is not a key"),
+        ("fault[a]=3", "is not a key"),
+        ("fault]0[=3", "is not a key"),
+        ("fault[]=3", "is not a key"),
+        ("agent.mass_kg=2 kg", "\"2 kg\" is not a TOML value"),
+        ("agent.mass_kg=2kg", "\"2kg\" is not a TOML value"),
+        ("agent.mass_kg=.5", "\".5\" is not a TOML value"),
+        ("controllers=[ftc]", "\"[ftc]\" is not a TOML value"),
+        ("name=\"a", "is not a TOML value"),
         (
             "name=two words",
-            "write a number, true, [a, list], { a = \"table\" } or \"text\" in double quotes",
+            "write a number, true, [1, 2], [\"a\", \"b\"], { a = \"table\" } or \"text\" in double quotes",
         ),
-        ("seed=1\nname=2", "is no TOML value"),
-        ("seed=1 # one", "is no TOML value"),
+        ("seed=1\nname=2", "is not a TOML value"),
+        ("seed=1 # one", "is not a TOML value"),
     ] {
         let said = text.parse::<Setting>().unwrap_err().to_string();
         assert!(said.contains(words), "{text:?}: {said}");

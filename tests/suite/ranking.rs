@@ -12,9 +12,8 @@ use urts_mc::results::sensitivity::{SensitivityResult, rank, worst};
 use urts_mc::results::tables::Tables;
 
 /// A campaign whose controllers have reasons to fail, and its scores.
-fn flown(name: &str, episodes: u32) -> (Campaign, Scores) {
-    let mut campaign = campaign(name);
-    campaign.episodes = episodes;
+fn simulated(name: &str, episodes: u32) -> (Campaign, Scores) {
+    let campaign = campaign(name).with_episodes(episodes).unwrap();
     let scores = tables(&campaign, Precision::F32).scores;
     (campaign, scores)
 }
@@ -32,7 +31,7 @@ fn sure<'a>(
 
 #[test]
 fn what_drives_the_error_is_found_and_what_does_not_is_not() {
-    let (campaign, scores) = flown("uav-paper", 192);
+    let (campaign, scores) = simulated("uav-paper", 192);
     let ranking = rank(&campaign, &scores);
     // The sensor fault's amplitude drives the FTC and the plain PID, the disturbance the PID that distrusts that
     // sensor.
@@ -74,7 +73,7 @@ fn what_drives_the_error_is_found_and_what_does_not_is_not() {
 #[test]
 fn what_drives_the_error_is_found_among_many_conditions_too() {
     // A screening with well over a hundred conditions: the largest number of permutations grows with them.
-    let (campaign, scores) = flown("uav-faults", 180);
+    let (campaign, scores) = simulated("uav-faults", 180);
     let ranking = rank(&campaign, &scores);
     let mut found = sure(&ranking, "rmse", "pid");
     assert!(found.any(|ranked| ranked.condition == "kappa"));
@@ -88,7 +87,7 @@ fn what_drives_the_error_is_found_among_many_conditions_too() {
 
 #[test]
 fn outcomes_of_other_episodes_have_no_cause_in_these() {
-    let (campaign, mut scores) = flown("uav-paper", 192);
+    let (campaign, mut scores) = simulated("uav-paper", 192);
     // Outcomes in another order belong to no condition: what is sure then is chance, 15 targets at 5 %.
     let stride = campaign.team * campaign.channels().len();
     for controller in 0..campaign.controllers.len() {
@@ -108,7 +107,7 @@ fn outcomes_of_other_episodes_have_no_cause_in_these() {
 
 #[test]
 fn the_worst_episodes_are_those_that_failed_then_those_nearest_to_it() {
-    let (campaign, scores) = flown("uav-paper", 96);
+    let (campaign, scores) = simulated("uav-paper", 96);
     let worst = worst(&campaign, &scores);
     assert_eq!(worst.len(), 30);
     let stride = campaign.team * campaign.channels().len();
@@ -169,11 +168,11 @@ fn drawn_tables(campaign: &Campaign, episodes: u32) -> Tables {
     };
     let mut tables = Tables::new(campaign);
     for episode in 0..episodes {
-        let flown = EpisodeResult {
+        let simulated = EpisodeResult {
             episode: draw(campaign, episode),
             outcomes: vec![vec![agent.clone(); campaign.team]; campaign.controllers.len()],
         };
-        tables.add(campaign, &flown);
+        tables.add(campaign, &simulated);
     }
     tables
 }

@@ -64,7 +64,7 @@ fn program(place: &Path, arguments: &str) -> Output {
 fn every_command_of_the_readme_works() {
     let place = place();
     let checks = fs::read_to_string(repository(".ci/run")).unwrap();
-    let (mut flown, mut checked) = (0, 0);
+    let (mut simulated, mut checked) = (0, 0);
     for command in commands() {
         let own = command
             .strip_prefix("cargo run --release --locked -- ")
@@ -73,7 +73,7 @@ fn every_command_of_the_readme_works() {
             let output = program(place.path(), arguments);
             let said = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{command}: {said}");
-            flown += 1;
+            simulated += 1;
         } else if let Some(file) = command.strip_prefix("cat ") {
             assert!(place.path().join(file).is_file(), "{command}");
         } else if command.starts_with("apt-get install") {
@@ -95,7 +95,7 @@ fn every_command_of_the_readme_works() {
             checked += 1;
         }
     }
-    assert!(flown >= 8 && checked >= 4, "{flown} {checked}");
+    assert!(simulated >= 8 && checked >= 4, "{simulated} {checked}");
     for name in ["report.html", "report.md", "episodes.parquet"] {
         assert!(place.path().join("reports/uav-paper").join(name).is_file());
     }

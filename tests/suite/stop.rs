@@ -6,13 +6,13 @@ use urts_mc::backend::gpu::Tuning;
 use urts_mc::campaign::{Campaign, Goal};
 use urts_mc::random::philox::{Address, Stream};
 use urts_mc::results::scores::Status;
-use urts_mc::results::{summarise, summary_table};
+use urts_mc::results::{RateMethod, summarise, summary_table};
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::manifest::Manifest;
 use urts_mc::run::replay::replay;
 use urts_mc::run::{Extras, run};
 use urts_mc::simulation::stopping::{Stopped, StoppingRule};
-use urts_mc::simulation::{Backend, RunOptions, Simulation, fly};
+use urts_mc::simulation::{Backend, RunOptions, Simulation, simulate};
 use urts_mc::statistics::{clopper_pearson_upper, sequential_interval, sequential_upper};
 
 fn stopping(keys: &str, episodes: u32) -> Campaign {
@@ -28,7 +28,7 @@ fn stopping(keys: &str, episodes: u32) -> Campaign {
 
 /// A run whose controller fails at this rate: what it knows at its end.
 fn synthetic(campaign: &Campaign, rate: f64, experiment: u32) -> (Stopped, bool) {
-    let mut watch = StoppingRule::new(campaign);
+    let mut stopping = StoppingRule::new(campaign);
     for episode in 0..campaign.episodes {
         let address = Address {
             episode,
@@ -38,12 +38,12 @@ fn synthetic(campaign: &Campaign, rate: f64, experiment: u32) -> (Stopped, bool)
             index: 0,
         };
         let fails = address.unit(3) < rate;
-        watch.take(|_| if fails { Status::Exceeded } else { Status::Ok });
-        if watch.is_done() {
+        stopping.take(|_| if fails { Status::Exceeded } else { Status::Ok });
+        if stopping.is_done() {
             break;
         }
     }
-    (watch.found(campaign).unwrap(), watch.is_done())
+    (stopping.found(campaign).unwrap(), stopping.is_done())
 }
 
 /// Of 2,000 runs: the shares that end early, and whose bounds miss the rate at their end.
@@ -135,10 +135,10 @@ fn failing() -> Campaign {
     )
 }
 
-fn flown(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
+fn simulated(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
     let campaign = failing();
     let gains = gains(&campaign);
-    fly(&campaign, gains, options, gpu, &|_| ()).unwrap()
+    simulate(&campaign, gains, options, gpu, &|_| ()).unwrap()
 }
 
 #[test]
@@ -148,14 +148,14 @@ fn a_run_ends_at_the_same_episode_whatever_flies_it() {
         simd,
         ..RunOptions::cpu(Precision::F32)
     };
-    let first = flown(&options(1, None), None);
+    let first = simulated(&options(1, None), None);
     let episodes = first.episodes();
     println!("ended after {episodes}");
     assert!((7..300).contains(&episodes) && episodes.is_multiple_of(6));
     assert_eq!(first.tables.scores.episodes(), episodes as usize);
     let statuses = &first.tables.scores.status;
     for (threads, simd) in [(2, None), (3, Some(Simd::Scalar)), (2, Some(Simd::Avx2))] {
-        let other = flown(&options(threads, simd), None);
+        let other = simulated(&options(threads, simd), None);
         assert_eq!(other.episodes(), episodes);
         assert_eq!(&other.tables.scores.status, statuses);
     }
@@ -170,9 +170,12 @@ fn a_run_ends_at_the_same_episode_whatever_flies_it() {
             tuning,
             ..RunOptions::cpu(Precision::F32)
         };
-        let other = flown(&options, Some(&gpu));
+        let other = simulated(&options, Some(&gpu));
         assert_eq!(other.episodes(), episodes);
-        assert_eq!((other.legs.len(), other.legs[0].episodes), (1, episodes));
+        assert_eq!(
+            (other.segments.len(), other.segments[0].episodes),
+            (1, episodes)
+        );
         assert_eq!(&other.tables.scores.status, statuses);
     }
 }
@@ -205,23 +208,21 @@ fn a_stopped_run_is_whole_says_why_it_ended_and_has_the_bounds_that_hold() {
     assert!(replay(out.path(), manifest.episodes, "pid", None).is_err());
     assert!(OutputDir::claim(out.path(), &campaign, false).is_ok());
     // The bounds of its failure rates are those that hold at any number, of every controller.
-    for row in &findings.summary {
+    for row in &findings.results.summary {
         let rate = &row.failures;
-        assert_eq!(rate.wilson, None);
+        assert_eq!(rate.method, RateMethod::Sequential);
         let expected = sequential_interval(rate.failed(), rate.n, 0.95);
-        assert_eq!(rate.sequential, Some(expected));
+        assert_eq!(rate.interval, Some(expected));
         assert_eq!(
             rate.upper_95,
             Some(sequential_upper(rate.failed(), rate.n, 0.95))
         );
     }
-    let frame = summary_table(&campaign, &findings.summary)
-        .to_frame()
-        .unwrap();
+    let frame = summary_table(&findings.results.summary).to_frame().unwrap();
     assert!(frame.column("failure_rate_sequential_lower").is_ok());
     let plain = altered("smoke", &[]);
     let scores = crate::common::tables(&plain, Precision::F32).scores;
-    let frame = summary_table(&plain, &summarise(&plain, &scores))
+    let frame = summary_table(&summarise(&plain, &scores))
         .to_frame()
         .unwrap();
     assert!(frame.column("failure_rate_sequential_lower").is_err());

@@ -130,7 +130,7 @@ fn a_stratum_decides_which_faults_occur_and_nothing_else() {
                         assert_eq!(own.occurs(), certain.contains(&fault));
                     }
                     // With its own probability: as where the campaign is not divided.
-                    StratumFaults::RandomQuantity => {
+                    StratumFaults::ByProbability => {
                         assert_eq!(own, &drawn.faults[fault]);
                         mixed[0] += u32::from(fault == 0 && own.occurs());
                         mixed[1] += u32::from(fault == 0);
@@ -165,8 +165,7 @@ fn the_stratum_is_a_column_of_the_episodes_and_of_no_undivided_campaign() {
         let own = campaign.strata.of(episode.parse().unwrap()).unwrap();
         assert_eq!(stratum.trim_matches('"'), &*own.name);
     }
-    let mut plain = altered("smoke", &[]);
-    plain.episodes = 2;
+    let plain = altered("smoke", &["episodes=2"]);
     let undivided = tables(&plain, Precision::F32).episodes.to_frame().unwrap();
     assert!(undivided.column("stratum").is_err());
 }
@@ -280,8 +279,7 @@ fn a_background_is_in_all_strata_and_none_of_its_own() {
     // Half of 96 agents each; beyond four standard deviations of 4.9 by chance once in 16,000.
     assert!(had.iter().all(|own| (29..=67).contains(own)), "{had:?}");
     // It is left to chance, and may be ranked, in all of them.
-    let mut short = with(strata);
-    short.set_episodes(48).unwrap();
+    let short = with(strata).with_episodes(48).unwrap();
     let ranking = rank(&short, &tables(&short, Precision::F32).scores);
     let of_noise = ranking
         .iter()

@@ -2,8 +2,8 @@
 
 use super::error::{self, RobotError};
 use super::structure::Robot;
-use super::urdf::UrdfOptions;
-use super::{table, urdf};
+use super::table;
+use super::urdf::{self, UrdfOptions};
 use std::path::Path;
 
 /// Where the shipped G1 is.

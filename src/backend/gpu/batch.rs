@@ -4,8 +4,7 @@ use super::GpuError;
 use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
 use super::instant::TraceInstant;
-use super::layout;
-use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::layout::{self, OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use super::pipeline::{ENTRIES, Entry, Pipeline, binding_layout, shape};
 use super::times::GpuTimes;
 use super::tuning::Tuning;
@@ -152,7 +151,7 @@ impl<'g> GpuSimulator<'g> {
     ///
     /// # Errors
     /// If the device fails; nothing of the batch is known then.
-    pub fn fly(
+    pub fn simulate(
         &mut self,
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
@@ -178,9 +177,9 @@ impl<'g> GpuSimulator<'g> {
         self.times.kernel_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let flown = self.flown(episodes)?;
+        let simulated = self.simulated(episodes)?;
         self.times.read_back_s += start.elapsed().as_secs_f64();
-        Ok(flown)
+        Ok(simulated)
     }
 
     /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended,
@@ -240,7 +239,7 @@ impl<'g> GpuSimulator<'g> {
                 });
             }
         }
-        self.flown(episodes)
+        self.simulated(episodes)
     }
 
     /// Replaces the buffers.
@@ -284,7 +283,7 @@ impl<'g> GpuSimulator<'g> {
     }
 
     /// Reads how the episodes of a batch ended.
-    fn flown(&mut self, episodes: Vec<Episode>) -> Result<Vec<EpisodeResult>, GpuError> {
+    fn simulated(&mut self, episodes: Vec<Episode>) -> Result<Vec<EpisodeResult>, GpuError> {
         let campaign = &self.model.campaign;
         let steps = campaign.time.steps;
         let blank = vec![
@@ -292,7 +291,7 @@ impl<'g> GpuSimulator<'g> {
             self.controllers.len()
         ];
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
-        let mut flown: Vec<EpisodeResult> = episodes
+        let mut simulated: Vec<EpisodeResult> = episodes
             .into_iter()
             .map(|episode| EpisodeResult {
                 episode,
@@ -300,20 +299,23 @@ impl<'g> GpuSimulator<'g> {
             })
             .collect();
         for (group, buffers) in self.groups.iter().zip(&self.buffers.own) {
-            let words = group.invocations(flown.len()) * OUTCOME_WORDS;
+            let words = group.invocations(simulated.len()) * OUTCOME_WORDS;
             let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
             layout::take_outcomes(
                 &self.model.campaign,
                 &group.shape,
                 self.model.parts[group.part].channels.start,
                 &words,
-                flown
-                    .iter_mut()
-                    .map(|flown| (flown.episode.index, &mut flown.outcomes[group.controller])),
+                simulated.iter_mut().map(|simulated| {
+                    (
+                        simulated.episode.index,
+                        &mut simulated.outcomes[group.controller],
+                    )
+                }),
             )
             .map_err(|error| self.gpu.driver_error(error))?;
         }
-        Ok(flown)
+        Ok(simulated)
     }
 
     /// Chooses the steps of the next dispatch by the time that the last one took.

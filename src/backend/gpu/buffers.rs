@@ -1,8 +1,7 @@
 //! What a batch of episodes needs on the device, within the limits of buffers and memory.
 
 use super::GpuError;
-use super::device;
-use super::device::{Gpu, Use};
+use super::device::{self, Gpu, Use};
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
 use super::pipeline::{MAX_BATCH, Pipeline};
 use super::tuning::Tuning;

@@ -1,8 +1,7 @@
 //! An open device: compiling, allocating, submitting and reading back, each with its errors.
 
 use super::GpuError;
-use super::adapter;
-use super::adapter::{Adapter, MEMORY_PERCENT, Wanted};
+use super::adapter::{self, Adapter, MEMORY_PERCENT, Wanted};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 

@@ -10,7 +10,7 @@ use super::adapter::AdapterKind;
 use super::device::Gpu;
 use super::layout::SHOWN_WORDS;
 use super::shape::Shape;
-use super::signals::LISTS;
+use super::signals::{LISTS, WAVE_LISTS};
 use crate::model::agent::Coupling;
 use crate::model::controller::FTC_STATES;
 use crate::random::philox::ROUNDS;
@@ -23,13 +23,10 @@ use crate::random::philox::ROUNDS;
 const SOFTWARE: u64 = 65_000;
 
 /// No hardware driver ends a loop. What counts there is that a dispatch is short beside the seconds after which a
-/// display driver resets the device. The time of the last dispatch sees to that; this bound holds for what is asked for
-/// by hand. A step has at least 50 iterations and takes microseconds, so 20,000 of them take about 0.1 s on a device
-/// that is not full.
+/// display driver resets the device. The time of the last dispatch sees to that; this bound keeps what is asked for by
+/// hand, and a measurement that was off, within reason. A step has at least 50 iterations and takes microseconds, so
+/// 20,000 of them take about 0.1 s on a device that is not full.
 const HARDWARE: u64 = 1 << 20;
-
-/// Lists of waves, each of which has a loop of its own wherever signals are evaluated.
-const WAVE_LISTS: u64 = 5;
 
 /// Iterations of the loops that an invocation goes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +39,7 @@ pub(crate) struct Iterations {
 
 impl Iterations {
     /// In a dispatch of so many steps, at most.
-    pub(crate) fn of(self, steps: u32) -> u64 {
+    pub(crate) fn in_steps(self, steps: u32) -> u64 {
         self.beside + u64::from(steps) * self.per_step
     }
 
@@ -73,16 +70,16 @@ impl Shape {
         let (team, switches) = (self.team as u64, lists.switches() as u64);
         let turbulences = lists.turbulence_entries.len() as u64;
         let (noises, vortices) = (lists.noise_entries.len() as u64, lists.vortices as u64);
-        let where_it = |is_there: bool, iterations: u64| if is_there { iterations } else { 0 };
+        let if_there = |is_there: bool, iterations: u64| if is_there { iterations } else { 0 };
         // A loop looks at its condition once more than it runs.
         let passes = |count: u64| count + 1;
         let random = passes(u64::from(ROUNDS));
 
         // Signals that are evaluated: a loop of each list of waves, and one of the rings of commands.
-        let evaluate = waves + WAVE_LISTS + passes(rings);
+        let evaluate = waves + WAVE_LISTS as u64 + passes(rings);
         // What is held over a step: a loop of each list, one of turbulences, the sum of the commands that leak, and
         // when it changes next.
-        let hold = where_it(lists.leaks(), passes(team))
+        let hold = if_there(lists.leaks(), passes(team))
             + switches
             + LISTS.len() as u64
             + passes(turbulences)
@@ -91,8 +88,8 @@ impl Shape {
             + passes(switches);
         // A stage: the sum over the team, the jets of the others, what is measured of the past.
         let coupled = self.coupling != Coupling::None;
-        let stage = where_it(coupled, passes(team))
-            + where_it(vortices > 0, passes(vortices) + vortices * passes(team))
+        let stage = if_there(coupled, passes(team))
+            + if_there(vortices > 0, passes(vortices) + vortices * passes(team))
             + passes(rings);
         // Taking in the start of a step: what is measured, and the rings of commands and of measurements.
         let remember = 3 * passes(rings);
@@ -122,7 +119,7 @@ impl Shape {
             .ok_or_else(|| GpuError::TooLarge {
                 adapter: adapter.name.clone(),
                 what: "a step of this team and its signals, in iterations of loops,",
-                needed: iterations.of(1),
+                needed: iterations.in_steps(1),
                 limit,
             })
     }

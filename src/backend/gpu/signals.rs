@@ -35,6 +35,8 @@ const LEAKS: usize = 3;
 const BURSTS: usize = 10;
 const WAVES: usize = 14;
 const RINGS: usize = 19;
+/// Lists of waves, each of which has a loop of its own wherever signals are evaluated.
+pub(super) const WAVE_LISTS: usize = RINGS - WAVES;
 
 /// What a campaign's signals are, but for their numbers: the same for every agent, episode and channel of a group.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -132,8 +134,8 @@ pub(crate) fn waves<L: Lane, const NC: usize>(
 }
 
 impl Lists {
-    /// Those of signals that are listed as [`Entries::Possible`], and of as many vortices; rings keep up to
-    /// `ring_steps` samples.
+    /// Those of signals that are listed as [`Selection::Possible`](crate::model::inputs::Selection), and of as many
+    /// vortices; rings keep up to `ring_steps` samples.
     pub(crate) fn of<L: Lane, const NC: usize>(
         signals: &ExogenousInputs<L, NC>,
         vortices: usize,

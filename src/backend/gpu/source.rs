@@ -11,8 +11,7 @@ use crate::model::episode::PlantKind;
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
-use crate::random::philox;
-use crate::random::philox::Stream;
+use crate::random::philox::{self, Stream};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use std::fmt::Write;
 
@@ -155,7 +154,7 @@ fn declare_random(text: &mut Constants) {
     text.words("MULTIPLIERS", philox::MULTIPLIERS);
     text.words("WEYL", philox::WEYL);
     text.count("STREAM_NOISE", Stream::Noise as usize);
-    text.count("STREAM_BURST", Stream::IntermittentWindow as usize);
+    text.count("STREAM_INTERMITTENT", Stream::Intermittent as usize);
     text.count("STREAM_TURBULENCE", Stream::Turbulence as usize);
     text.count("MEMBERS_PER_AGENT", MEMBERS_PER_AGENT);
 }

@@ -183,7 +183,7 @@ pub(crate) fn setting(
             PlantKind::Axis => Axis::new(uav, part.channels.start).bytes(),
             PlantKind::Translation => Translation::new(uav).bytes(),
             PlantKind::Attitude => Attitude::new(uav).bytes(),
-            _ => Thrust::new(uav).bytes(),
+            PlantKind::Thrust | PlantKind::Leg => Thrust::new(uav).bytes(),
         },
         Agent::Biped(biped) => leg(biped, part).bytes(),
     });

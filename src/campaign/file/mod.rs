@@ -1,12 +1,12 @@
 //! The campaign file as it is written: one struct per TOML table, nothing checked but names and types.
 //! [`super::Campaign`] is what the rest of the program sees.
 
+mod disturbances_and_faults;
 mod plan;
-mod signals;
 mod value;
 
+pub use disturbances_and_faults::*;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
-pub use signals::*;
 pub use value::{
     ChannelsFile, DistributionFile, NormalFile, Numbers, SamplingScope, TruncatedNormalFile, Value,
 };

@@ -1,13 +1,11 @@
 //! `[agent]`.
 
-use crate::agent::ActuationKind;
-use crate::agent::robot;
-use crate::agent::robot::{Robot, RobotError};
-use crate::agent::{Agent, Biped, RobotFile, Uav};
-use crate::campaign::check::{Bounds, Check};
+use crate::agent::robot::{self, Robot, RobotError};
+use crate::agent::{ActuationKind, Agent, Biped, RobotFile, Uav};
+use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use std::path::Path;
+use crate::campaign::parameter::Bounds;
 
 /// The paper's UAV, section V.
 const PAPER_MASS_KG: f64 = 2.0;
@@ -57,13 +55,7 @@ impl Check<'_> {
                 "use \"full\", or \"limited\" to cut them at the robot's limits",
             ));
         }
-        let beside = |name: &String| {
-            self.source
-                .path
-                .parent()
-                .unwrap_or(Path::new(""))
-                .join(name)
-        };
+        let beside = |name: &String| self.source.beside(name);
         let path = file.robot.as_ref().map_or(robot::G1_PATH.into(), beside);
         let text = match (text, &file.robot) {
             (Some(text), _) => text.to_string(),

@@ -2,9 +2,9 @@
 
 use crate::agent::Agent;
 use crate::campaign::check::{Check, Written};
+use crate::campaign::disturbances_and_faults::Disturbance;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::signals::Disturbance;
 use crate::campaign::time::Time;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -79,7 +79,7 @@ impl Check<'_> {
             return Err(self.invalid(
                 key,
                 "\"ground-reaction\"",
-                "the ground answers a walk",
+                "a ground reaction needs a walking reference",
                 "set reference.kind = \"walk\", or remove it",
             ));
         }
@@ -102,7 +102,7 @@ impl Check<'_> {
             }
             if team == 1 {
                 return refused(
-                    "a UAV alone flies in nobody's jet",
+                    "a single UAV has no other UAV whose rotors could act on it",
                     "remove it, or raise agent.team",
                 );
             }

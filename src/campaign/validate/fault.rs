@@ -2,29 +2,22 @@
 
 use super::timing::ONSET_KEY;
 use crate::agent::Agent;
-use crate::campaign::check::{Bounds, Check, Parameter, Written, of_agent};
+use crate::campaign::check::{Check, Written};
+use crate::campaign::disturbances_and_faults::Fault;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::parameter::{Bounds, Parameter, of_agent};
 use crate::campaign::quantity::RandomQuantity;
-use crate::campaign::signals::Fault;
 use crate::campaign::time::Time;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// When a fault begins.
-const ONSET: Parameter = Parameter {
-    name: ONSET_KEY,
-    default: Some(0.0),
-    bounds: Bounds::NonNegative,
-    per: SamplingScope::Agent,
-};
+const ONSET: Parameter = of_agent(ONSET_KEY, Bounds::NonNegative).or(0.0);
 /// How long it stays: to the end, if nothing is said.
 const DURATION: Parameter = of_agent("duration_s", Bounds::Positive);
 /// The time in which it comes.
-const RAMP: Parameter = Parameter {
-    name: "ramp_s",
-    ..ONSET
-};
+const RAMP: Parameter = of_agent("ramp_s", Bounds::NonNegative).or(0.0);
 
 /// When a fault is there, as in [`Fault`].
 struct Presence {

@@ -1,13 +1,13 @@
 //! Where a fault strikes: which way, and which channels.
 
-use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE};
+use crate::agent::{ActuationKind, Agent, HEIGHT};
 use crate::campaign::check::Check;
+use crate::campaign::disturbances_and_faults::FaultChannels;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::signals::FaultChannels;
 
 /// The channel whose actuator is the thrust where there is no other force.
-const THRUST: usize = FIRST_ATTITUDE - 1;
+const THRUST: usize = HEIGHT;
 
 impl Check<'_> {
     /// Which way a fault strikes.

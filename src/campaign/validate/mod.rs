@@ -11,16 +11,16 @@ mod sampling;
 mod synthesis;
 mod timing;
 
-use super::check::{Bounds, Check, Parameter};
+use super::check::Check;
+use super::disturbances_and_faults::{Disturbance, Fault};
 use super::error::CampaignError;
 use super::file::*;
+use super::parameter::{Bounds, required};
 use super::quantity::RandomQuantity;
-use super::signals::{Disturbance, Fault};
 use super::source::Source;
 use super::time::Time;
-use super::validated::{Campaign, Control, Initial, Verdict};
-use crate::agent::ActuationKind;
-use crate::agent::Agent;
+use super::validated::{Campaign, Control, Initial, Validated, Verdict};
+use crate::agent::{ActuationKind, Agent};
 use std::sync::Arc;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
@@ -60,7 +60,7 @@ pub(super) fn validate(
     let controllers = check.controllers(file.controllers.as_deref(), &synthesis)?;
     let strata = check.strata(&file.strata, &file.fault, &fault_names, file.episodes)?;
     let sampling = check.sampling(&file)?;
-    Ok(Campaign {
+    Ok(Campaign::new(Validated {
         path: source.path.to_path_buf(),
         text: source.text.to_string(),
         overlay: source.overlay.to_vec(),
@@ -95,7 +95,7 @@ pub(super) fn validate(
         verdict: check.verdict(file.verdict.as_ref().unwrap_or(&VerdictFile::default()))?,
         channels: check.channels,
         agent,
-    })
+    }))
 }
 
 impl Check<'_> {
@@ -331,12 +331,7 @@ impl Check<'_> {
         let blocks = file.and_then(|file| file.agents.as_deref());
         self.blocks("initial.agents", blocks, team)?;
         let of = |name| {
-            let parameter = Parameter {
-                name,
-                default: Some(0.0),
-                bounds: Bounds::Any,
-                per: SamplingScope::Channel,
-            };
+            let parameter = required(name, Bounds::Any).or(0.0);
             self.per_channel("initial", file, blocks, parameter, team)
         };
         Ok(Initial {

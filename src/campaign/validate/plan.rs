@@ -157,7 +157,7 @@ impl Check<'_> {
                     ));
                 }
                 if word == "all" {
-                    return Ok(vec![(name("mixed"), StratumFaults::RandomQuantity)]);
+                    return Ok(vec![(name("mixed"), StratumFaults::ByProbability)]);
                 }
                 if let Some(name) = &file.name {
                     return Err(self.invalid(

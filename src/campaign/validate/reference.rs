@@ -1,11 +1,11 @@
 //! `[reference]`.
 
-use crate::agent::ActuationKind;
 use crate::agent::robot::Robot;
-use crate::agent::{Agent, FIRST_ATTITUDE};
-use crate::campaign::check::{Bounds, Check};
+use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE};
+use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::parameter::Bounds;
 use crate::reference::path::{DEFAULT_STEP_M, PathLimits};
 use crate::reference::walk::{Foot, Gait, WalkError};
 use crate::reference::{AgentWalk, Reference, Sinusoid, Walk, WaypointPath};

@@ -1,8 +1,9 @@
 //! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
 
-use crate::campaign::check::{Bounds, Check};
+use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::parameter::Bounds;
 use crate::campaign::plan::{ALL, Goal, Sampling, Stop, Strata};
 use crate::campaign::validated::Requirement;
 use crate::random::{MOST_ENTRIES, Method, allows};
@@ -53,12 +54,17 @@ impl Check<'_> {
                 "use \"independent\"",
             );
         }
-        self.divides(sampling, file.episodes)?;
+        self.divides("episodes", sampling, file.episodes)?;
         Ok(sampling)
     }
 
-    /// Refuses a number of episodes that the design does not divide into equal, balanced replicates.
-    pub(crate) fn divides(&self, sampling: Sampling, episodes: u32) -> Result<(), CampaignError> {
+    /// Refuses a number of episodes, which `key` gives, that makes no equal replicates of a design.
+    pub(crate) fn divides(
+        &self,
+        key: &str,
+        sampling: Sampling,
+        episodes: u32,
+    ) -> Result<(), CampaignError> {
         let Some(replicates) = sampling.replicates() else {
             return Ok(());
         };
@@ -86,7 +92,7 @@ impl Check<'_> {
             format!("simulate {fitting} episodes, or change sampling.replicates")
         });
         Err(self.invalid(
-            "episodes",
+            key,
             episodes,
             &format!("sampling.replicates = {replicates} makes {replicates} {words}"),
             &remedy,

@@ -1,15 +1,12 @@
 //! `[synthesis]` and the controllers that it can give.
 
-use crate::agent::ActuationKind;
-use crate::agent::Agent;
-use crate::agent::ChannelRole;
+use crate::agent::{ActuationKind, Agent, ChannelRole};
 use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::validated::{FTC, GainSource, NamedGains, PID, PID_TUNED};
+use crate::campaign::validated::{BUILT_IN, FTC, GainSource, NamedGains};
 use crate::synthesis::{ChannelDesign, Preset, SmoothingRule, SynthesisError};
 use crate::util::suggest::did_you_mean;
-use std::path::Path;
 
 impl Check<'_> {
     /// Where the gains come from.
@@ -61,18 +58,12 @@ impl Check<'_> {
         };
         let designs = preset.designs().into_iter().map(design);
         let designs = designs.collect::<Result<_, _>>()?;
-        let beside = |file: &str| {
-            self.source
-                .path
-                .parent()
-                .unwrap_or(Path::new(""))
-                .join(file)
-        };
+        let beside = |file: &str| self.source.beside(file);
         let mut named = Vec::new();
         for (name, entry) in &file.named {
             let key = format!("synthesis.named.{name}");
             self.name(&key, name)?;
-            if [FTC, PID, PID_TUNED].contains(&name.as_str()) {
+            if BUILT_IN.contains(&name.as_str()) {
                 return Err(self.invalid(
                     key,
                     "a table",
@@ -102,14 +93,14 @@ impl Check<'_> {
     ) -> Result<Vec<String>, CampaignError> {
         let Some(names) = names else {
             let named = source.named.iter().map(|named| named.name.clone());
-            return Ok([FTC, PID, PID_TUNED]
+            return Ok(BUILT_IN
                 .into_iter()
                 .map(String::from)
                 .chain(named)
                 .collect());
         };
         let named = source.named.iter().map(|named| named.name.as_str());
-        let known: Vec<&str> = [FTC, PID, PID_TUNED].into_iter().chain(named).collect();
+        let known: Vec<&str> = BUILT_IN.into_iter().chain(named).collect();
         if let Some(at) = names
             .iter()
             .position(|name| !known.contains(&name.as_str()))

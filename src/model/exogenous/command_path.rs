@@ -82,22 +82,22 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         // What is sent at first arrives, blocked or not: before it there is nothing.
         let first = step == 0 && moment == Moment::Start;
         for c in 0..NC {
-            let (mut wanted, mut other) = (one, [zero]);
+            let (mut sent, mut other) = (one, [zero]);
             if held {
-                (wanted, other) = (zero, [self.last_sent[c]]);
+                (sent, other) = (zero, [self.last_sent[c]]);
             }
             for ring in &self.command_rings {
                 other = ring.recall(c, recalled, other);
-                [wanted] = ring.or_past(c, [wanted], [zero]);
+                [sent] = ring.or_past(c, [sent], [zero]);
             }
             if !self.command_holds.is_empty() && !first {
                 let blocked = self.blocked[c];
                 other = [L::select_le(half, blocked, self.last_arrived[c], other[0])];
-                wanted = L::select_le(half, blocked, zero, wanted);
+                sent = L::select_le(half, blocked, zero, sent);
             }
             let gain = self.actuator.gain[c];
             self.actuator.bias[c] = other[0].mul_add(gain, self.actuator.bias[c]);
-            self.actuator.gain[c] = gain * wanted;
+            self.actuator.gain[c] = gain * sent;
         }
     }
 
@@ -117,9 +117,9 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
 
     /// Takes in what was wanted at the start of step number `step`: what of it was sent, and what arrived.
     #[inline(always)]
-    pub(crate) fn remember_command(&mut self, c: usize, step: u32, wanted: L) {
+    pub(crate) fn remember_command(&mut self, c: usize, step: u32, sent: L) {
         if self.ticks(step) {
-            self.last_sent[c] = wanted;
+            self.last_sent[c] = sent;
         }
         let mut carried = [self.last_sent[c]];
         for ring in &mut self.command_rings {

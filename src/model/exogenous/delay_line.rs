@@ -66,9 +66,9 @@ impl<L: Lane, const NC: usize> Actuator<L, NC> {
 
     /// The command that acts on a channel.
     #[inline(always)]
-    pub(crate) fn command(&self, c: usize, wanted: L) -> L {
+    pub(crate) fn command(&self, c: usize, sent: L) -> L {
         clamp(
-            wanted.mul_add(self.gain[c], self.bias[c]),
+            sent.mul_add(self.gain[c], self.bias[c]),
             self.low[c],
             self.high[c],
         )

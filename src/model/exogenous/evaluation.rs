@@ -169,10 +169,10 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
 
     /// Takes in what was wanted and what was at the start of step number `step`.
     #[inline(always)]
-    pub(crate) fn remember(&mut self, c: usize, step: u32, wanted: L, motion: [L; 2]) {
+    pub(crate) fn remember(&mut self, c: usize, step: u32, sent: L, motion: [L; 2]) {
         self.last_measured[c] = self.measure(c, Moment::Start, motion);
-        self.last_command[c] = self.actuator.command(c, wanted);
-        self.remember_command(c, step, wanted);
+        self.last_command[c] = self.actuator.command(c, sent);
+        self.remember_command(c, step, sent);
         let [position, velocity] = motion;
         let scale = self.scale[c];
         let mut seen = [

@@ -3,8 +3,7 @@
 
 use super::delay_line::Moment;
 use super::inputs::ExogenousInputs;
-use super::vortex;
-use super::vortex::Vortex;
+use super::vortex::{self, Vortex};
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};
 
 /// [`ExogenousInputs::hold`], for the start of a step.
@@ -135,13 +134,13 @@ impl<L: Lane> Kernel for VortexForce<'_, L> {
 pub(crate) fn remember<L: Lane, const NC: usize>(
     signals: &mut ExogenousInputs<L, NC>,
     step: u32,
-    wanted: &[L; NC],
+    sent: &[L; NC],
     motion: &[[L; NC]; 2],
 ) {
     L::dispatch(Remember {
         signals,
         step,
-        wanted,
+        sent,
         motion,
     });
 }
@@ -149,7 +148,7 @@ pub(crate) fn remember<L: Lane, const NC: usize>(
 struct Remember<'a, L: Lane, const NC: usize> {
     signals: &'a mut ExogenousInputs<L, NC>,
     step: u32,
-    wanted: &'a [L; NC],
+    sent: &'a [L; NC],
     motion: &'a [[L; NC]; 2],
 }
 
@@ -160,7 +159,7 @@ impl<L: Lane, const NC: usize> Kernel for Remember<'_, L, NC> {
         let [position, velocity] = self.motion;
         for c in 0..NC {
             let motion = [position[c], velocity[c]];
-            self.signals.remember(c, self.step, self.wanted[c], motion);
+            self.signals.remember(c, self.step, self.sent[c], motion);
         }
     }
 }

@@ -82,7 +82,7 @@ impl<L: Lane, const NC: usize> IntermittentWindow<L, NC> {
             let since = step.wrapping_sub(onset_step(onsets[lane]));
             let address = Address {
                 episode: episodes[lane],
-                stream: Stream::IntermittentWindow,
+                stream: Stream::Intermittent,
                 entry: self.entry,
                 member: self.members[channel],
                 index: since / self.slot_steps[channel][lane],

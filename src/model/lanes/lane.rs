@@ -10,7 +10,7 @@ pub const MAX_WIDTH: usize = 16;
 pub trait Real: Copy + Send + Sync + PartialOrd + Debug + Default + 'static {
     /// The largest finite value: what passes it is a divergence.
     const MAX: Self;
-    /// Whether this is the precision of the reference, in which alone some options are compiled.
+    /// Whether this is double precision, the reference; some controllers are compiled for it alone.
     const IS_REFERENCE: bool;
     /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;

@@ -78,7 +78,7 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for LegPlant<L::Real, CUT
         _extra: &[L; 0],
     ) -> Response<L, LEG_JOINTS, 0> {
         let zero = [L::number(0.0); LEG_JOINTS];
-        let (mut wanted, mut command) = (zero, zero);
+        let (mut sent, mut command) = (zero, zero);
         let (mut excess, mut torque) = (zero, zero);
         let rows_of = |c: usize| &inputs.reference[leg_rows(CUT) * c..leg_rows(CUT) * (c + 1)];
         for c in 0..LEG_JOINTS {
@@ -89,8 +89,8 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for LegPlant<L::Real, CUT
             let limit = L::splat(self.max_torque[c]);
             let limited = clamp(demanded, -limit, limit);
             excess[c] = demanded - limited;
-            wanted[c] = if CUT { limited } else { demanded };
-            command[c] = inputs.actuator.command(c, wanted[c]);
+            sent[c] = if CUT { limited } else { demanded };
+            command[c] = inputs.actuator.command(c, sent[c]);
             // The true robot is the modelled one times a number, so a torque divided by that does the same to the
             // model.
             let force = inputs.ground[c].mul_add(L::splat(rows[2][2]), inputs.force[c]);
@@ -98,20 +98,21 @@ impl<L: Lane, const CUT: bool> Plant<L, LEG_JOINTS, 0> for LegPlant<L::Real, CUT
         }
         let acceleration =
             forward_dynamics(&self.model, &inputs.position, &inputs.velocity, &torque);
-        let (mut told, mut error_acceleration) = (zero, zero);
+        let (mut applied_feedback, mut error_acceleration) = (zero, zero);
         for c in 0..LEG_JOINTS {
             let rows = rows_of(c);
-            told[c] = inputs.feedback[c];
+            applied_feedback[c] = inputs.feedback[c];
             if CUT {
                 // The feedback that would have demanded what the limits left.
-                told[c] = told[c] - plus_product(zero[c], &matrix_row(rows, 3), &excess);
+                applied_feedback[c] =
+                    applied_feedback[c] - plus_product(zero[c], &matrix_row(rows, 3), &excess);
             }
             error_acceleration[c] = acceleration[c] - L::splat(rows[0][2]);
         }
         Response {
             error_acceleration,
-            told,
-            wanted,
+            applied_feedback,
+            sent,
             command,
             excess,
             extra_rate: [],

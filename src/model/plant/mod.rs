@@ -37,9 +37,9 @@ pub(crate) struct Response<L, const NC: usize, const NX: usize> {
     /// x'' - r''.
     pub(crate) error_acceleration: [L; NC],
     /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
-    pub(crate) told: [L; NC],
+    pub(crate) applied_feedback: [L; NC],
     /// The command u of (9) after limits, as it sets out.
-    pub(crate) wanted: [L; NC],
+    pub(crate) sent: [L; NC],
     /// The command that acts, after faults; under thrust, x, y and z show the force demanded.
     pub(crate) command: [L; NC],
     /// By how much the limits cut the command; zero where there are none.

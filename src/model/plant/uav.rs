@@ -67,12 +67,12 @@ impl<R: Real> Axis<R> {
         c: usize,
     ) -> [L; 3] {
         let [_, _, r_acceleration, feedforward] = splat_row::<L>(&inputs.reference[c]);
-        let wanted = inputs.feedback[c].mul_add(L::splat(self.mass), feedforward);
-        let command = inputs.actuator.command(c, wanted);
+        let sent = inputs.feedback[c].mul_add(L::splat(self.mass), feedforward);
+        let command = inputs.actuator.command(c, sent);
         let force = inputs.velocity[c].mul_add(-L::splat(self.drag), command + inputs.force[c]);
         let offset = r_acceleration + L::splat(self.gravity);
         let acceleration = force.mul_add(inputs.inverse_inertia[c], -offset);
-        [acceleration, wanted, command]
+        [acceleration, sent, command]
     }
 }
 
@@ -87,11 +87,11 @@ impl<L: Lane> Plant<L, 1, 0> for Axis<L::Real> {
 
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 1>, _extra: &[L; 0]) -> Response<L, 1, 0> {
-        let [acceleration, wanted, command] = self.answer(inputs, 0);
+        let [acceleration, sent, command] = self.answer(inputs, 0);
         Response {
             error_acceleration: [acceleration],
-            told: inputs.feedback,
-            wanted: [wanted],
+            applied_feedback: inputs.feedback,
+            sent: [sent],
             command: [command],
             excess: [L::number(0.0)],
             extra_rate: [],
@@ -125,14 +125,14 @@ impl<L: Lane> Plant<L, 3, 0> for Translation<L::Real> {
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
         let zero = L::number(0.0);
-        let (mut acceleration, mut wanted, mut command) = ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut acceleration, mut sent, mut command) = ([zero; 3], [zero; 3], [zero; 3]);
         for i in 0..3 {
-            [acceleration[i], wanted[i], command[i]] = self.axes[i].answer(inputs, i);
+            [acceleration[i], sent[i], command[i]] = self.axes[i].answer(inputs, i);
         }
         Response {
             error_acceleration: acceleration,
-            told: inputs.feedback,
-            wanted,
+            applied_feedback: inputs.feedback,
+            sent,
             command,
             excess: [zero; 3],
             extra_rate: [],
@@ -189,11 +189,11 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
     #[inline(always)]
     fn respond(&self, inputs: &Inputs<'_, L, 3>, _extra: &[L; 0]) -> Response<L, 3, 0> {
         let zero = L::number(0.0);
-        let (mut wanted, mut command, mut torque) = ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut sent, mut command, mut torque) = ([zero; 3], [zero; 3], [zero; 3]);
         for i in 0..3 {
             let feedforward = L::splat(inputs.reference[i][3]);
-            wanted[i] = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
-            command[i] = inputs.actuator.command(i, wanted[i]);
+            sent[i] = inputs.feedback[i].mul_add(L::splat(self.inertia[i]), feedforward);
+            command[i] = inputs.actuator.command(i, sent[i]);
             torque[i] = command[i] + inputs.force[i];
         }
         let mut error_acceleration =
@@ -203,8 +203,8 @@ impl<L: Lane> Plant<L, 3, 0> for Attitude<L::Real> {
         }
         Response {
             error_acceleration,
-            told: inputs.feedback,
-            wanted,
+            applied_feedback: inputs.feedback,
+            sent,
             command,
             excess: [zero; 3],
             extra_rate: [],
@@ -277,8 +277,8 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         let zero = L::number(0.0);
         let [roll, pitch, roll_rate, pitch_rate] = *extra;
         let [yaw, yaw_rate, yaw_acceleration, _] = splat_row::<L>(&inputs.reference[5]);
-        let (mut told, mut excess) = ([zero; 6], [zero; 6]);
-        let (mut wanted, mut command) = ([zero; 6], [zero; 6]);
+        let (mut applied_feedback, mut excess) = ([zero; 6], [zero; 6]);
+        let (mut sent, mut command) = ([zero; 6], [zero; 6]);
         let mut error_acceleration = [zero; 6];
 
         // The force that the position loop demands, (9).
@@ -294,15 +294,15 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         let ahead = cos_yaw.mul_add(fx, sin_yaw * fy);
         let aside = cos_yaw.mul_add(fy, -(sin_yaw * fx));
         let upright = ahead.mul_add(ahead, fz * fz).sqrt();
-        let roll_wanted = -aside.atan2(upright);
-        let pitch_wanted = ahead.atan2(fz);
+        let roll_demanded = -aside.atan2(upright);
+        let pitch_demanded = ahead.atan2(fz);
         let tilt = L::splat(self.max_tilt);
         let (roll_command, pitch_command) = (
-            clamp(roll_wanted, -tilt, tilt),
-            clamp(pitch_wanted, -tilt, tilt),
+            clamp(roll_demanded, -tilt, tilt),
+            clamp(pitch_demanded, -tilt, tilt),
         );
-        excess[0] = pitch_wanted - pitch_command;
-        excess[1] = roll_wanted - roll_command;
+        excess[0] = pitch_demanded - pitch_command;
+        excess[1] = roll_demanded - roll_command;
 
         // Critically damped command filter: q'' = w^2 (command - q) - 2 w q'.
         let w = L::splat(self.filter);
@@ -310,13 +310,14 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         let pitch_acceleration = (w * (pitch_command - pitch) - (pitch_rate + pitch_rate)) * w;
 
         // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
-        let thrust_wanted = fx.mul_add(fx, fy.mul_add(fy, fz * fz)).sqrt();
-        let thrust = clamp(thrust_wanted, zero, L::splat(self.max_thrust));
-        excess[2] = thrust_wanted - thrust;
+        let thrust_demanded = fx.mul_add(fx, fy.mul_add(fy, fz * fz)).sqrt();
+        let thrust = clamp(thrust_demanded, zero, L::splat(self.max_thrust));
+        excess[2] = thrust_demanded - thrust;
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);
         for i in 0..3 {
             let feedforward = L::splat(inputs.reference[i][3]);
-            told[i] = thrust.mul_add(commanded_axis[i], -feedforward) * L::splat(self.inverse_mass);
+            applied_feedback[i] =
+                thrust.mul_add(commanded_axis[i], -feedforward) * L::splat(self.inverse_mass);
         }
 
         // Torques: demanded along the filtered attitude, then limited.
@@ -333,16 +334,16 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
             let demanded = (accelerations[i] + inputs.feedback[c]).mul_add(inertia, non_inertial);
             let limited = clamp(demanded, -limit, limit);
             excess[c] = demanded - limited;
-            told[c] = (limited - non_inertial)
+            applied_feedback[c] = (limited - non_inertial)
                 .mul_add(L::splat(self.inverse_inertia[i]), -accelerations[i]);
-            wanted[c] = limited;
+            sent[c] = limited;
             command[c] = inputs.actuator.command(c, limited);
             torque[i] = command[c] + inputs.force[c];
         }
 
         // What the faults leave of the thrust acts along the true body axis.
         let applied = inputs.actuator.command(2, thrust);
-        [wanted[0], wanted[1], wanted[2]] = [fx, fy, thrust];
+        [sent[0], sent[1], sent[2]] = [fx, fy, thrust];
         for i in 0..3 {
             command[i] = force[i].mul_add(inputs.actuator.gain[i], inputs.actuator.bias[i]);
         }
@@ -367,8 +368,8 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         }
         Response {
             error_acceleration,
-            told,
-            wanted,
+            applied_feedback,
+            sent,
             command,
             excess,
             extra_rate: [roll_rate, pitch_rate, roll_acceleration, pitch_acceleration],

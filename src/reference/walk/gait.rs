@@ -59,12 +59,6 @@ impl Gait {
         smoothing_step_m: 2.0,
     };
 
-    /// The part of the period in which one foot swings, s.
-    #[must_use]
-    pub fn single_support_s(&self) -> f64 {
-        self.step_period_s - self.double_support_s
-    }
-
     /// Refuses numbers that cannot be or that contradict each other.
     ///
     /// # Errors

@@ -2,8 +2,7 @@
 
 use super::foot::Foot;
 use super::plan::Walk;
-use crate::agent::robot::wrench;
-use crate::agent::robot::wrench::{JointMotion, PelvisMotion, whole_body_wrench};
+use crate::agent::robot::wrench::{self, JointMotion, PelvisMotion, whole_body_wrench};
 use crate::agent::robot::{JOINTS, Robot};
 use nalgebra::Vector3;
 

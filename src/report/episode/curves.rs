@@ -2,8 +2,7 @@
 
 use super::episode_data::{ControllerTrace, EpisodeView};
 use super::frame::Frame;
-use crate::agent::ActuationKind;
-use crate::agent::{Agent, FIRST_ATTITUDE};
+use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE};
 use crate::model::ChannelSample;
 use crate::report::page::document::{Figure, LegendEntry};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
@@ -65,7 +64,7 @@ impl Quantity {
     }
 
     /// What each controller made of it.
-    fn flown(self) -> fn(&ChannelSample) -> f64 {
+    fn simulated(self) -> fn(&ChannelSample) -> f64 {
         match self {
             Self::Error => |shown| shown.e,
             Self::State => |shown| shown.x,
@@ -145,11 +144,11 @@ pub(super) fn panel(
     }
     // The first is drawn last, above the others.
     for flight in shown.iter().rev() {
-        let curve = scene.curve(flight, at, quantity.flown());
+        let curve = scene.curve(flight, at, quantity.simulated());
         if quantity.is_fault() && curve.iter().all(|(_, value)| *value == 0.0) {
             continue;
         }
-        draw(flight, quantity.flown(), flight.ink(), Stroke::Solid);
+        draw(flight, quantity.simulated(), flight.ink(), Stroke::Solid);
     }
     if let (Some(estimate), Some(first)) = (quantity.estimate(), shown.first()) {
         draw(first, estimate, scene.estimate_ink(), Stroke::Dashed);
@@ -188,7 +187,7 @@ fn frame(scene: &EpisodeView<'_>, quantity: Quantity, at: (usize, usize)) -> Opt
         let picks = [
             quantity.truth(),
             quantity.estimate(),
-            Some(quantity.flown()),
+            Some(quantity.simulated()),
         ];
         for pick in picks.into_iter().flatten() {
             let curve = scene.curve(flight, at, pick).into_iter();
@@ -258,7 +257,7 @@ fn legend(
     }
     for flight in &scene.flights {
         let estimates = (0..scene.campaign.channels().len()).any(|channel| {
-            let curve = scene.curve(flight, (agent, channel), quantity.flown());
+            let curve = scene.curve(flight, (agent, channel), quantity.simulated());
             curve.iter().any(|(_, value)| *value != 0.0)
         });
         match quantity.is_fault() {

@@ -3,6 +3,7 @@
 use super::episode_data::EpisodeView;
 use crate::campaign::Link;
 use crate::draw::AgentDraw;
+use crate::draw::quantities::Source;
 use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::statistics::root_mean_square;
 use crate::util::format::number;
@@ -38,7 +39,7 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
         "parameters",
     ]);
     for (agent, draw) in scene.episode.agents.iter().enumerate() {
-        for (fault, drawn) in scene.campaign.faults.iter().zip(&draw.faults) {
+        for (place, (fault, drawn)) in scene.campaign.faults.iter().zip(&draw.faults).enumerate() {
             if !drawn.occurs() {
                 continue;
             }
@@ -52,23 +53,7 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
                 all if all == drawn.strikes.len() => "all".to_string(),
                 _ => struck.join(", "),
             };
-            let parameters = fault.kind.parameters().iter().zip(&drawn.parameters);
-            let parameters = parameters.map(|(parameter, values)| {
-                let of_struck = scene
-                    .campaign
-                    .channels()
-                    .iter()
-                    .zip(values)
-                    .zip(&drawn.strikes);
-                let of_struck: Vec<_> = of_struck
-                    .filter(|(_, strikes)| **strikes)
-                    .map(|((name, value), _)| (name, *value))
-                    .collect();
-                match values.len() {
-                    1 => format!("{} {}", parameter.name, number(values[0])),
-                    _ => valued(parameter.name, &of_struck),
-                }
-            });
+            let parameters = parameters(scene, draw, |source| source == Source::Fault(place));
             let target = fault.target.name();
             let strikes = match (target, fault.link) {
                 ("network", Link::Command) => "network, command",
@@ -102,20 +87,9 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
 fn disturbances(scene: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new(["agent", "disturbance", "parameters"]);
     for (agent, draw) in scene.episode.agents.iter().enumerate() {
-        for (disturbance, drawn) in scene.campaign.disturbances.iter().zip(&draw.disturbances) {
-            let parameters = disturbance.kind.parameters().iter().zip(drawn);
-            let parameters = parameters.map(|(parameter, values)| {
-                let names = scene.campaign.channels().iter().enumerate();
-                let acting: Vec<_> = names
-                    .zip(values)
-                    .filter(|((channel, _), _)| disturbance.kind.acts_on(*channel))
-                    .map(|((_, name), value)| (name, *value))
-                    .collect();
-                match values.len() {
-                    1 => format!("{} {}", parameter.name, number(values[0])),
-                    _ => valued(parameter.name, &acting),
-                }
-            });
+        for (place, disturbance) in scene.campaign.disturbances.iter().enumerate() {
+            let source = Source::Disturbance(place, disturbance.kind);
+            let parameters = parameters(scene, draw, |own| own == source);
             grid.rows.push(vec![
                 Cell::number(agent.to_string()),
                 Cell::text(disturbance.kind.name()),
@@ -157,6 +131,22 @@ fn conditions(scene: &EpisodeView<'_>) -> Block {
         ]);
     }
     Block::Grid(grid)
+}
+
+/// The parameters of a disturbance or fault with an agent's values.
+fn parameters<'a>(
+    scene: &'a EpisodeView<'_>,
+    draw: &'a AgentDraw,
+    is_of: impl Fn(Source) -> bool + 'a,
+) -> impl Iterator<Item = String> + 'a {
+    let own = scene.quantities.iter();
+    let own = own.filter(move |own| own.is_parameter() && is_of(own.source));
+    own.map(|quantity| {
+        let names = scene.campaign.channels();
+        let values = quantity.applied(draw);
+        let values: Vec<_> = values.map(|(k, value)| (&names[k], value)).collect();
+        valued(quantity.name, &values)
+    })
 }
 
 /// Parameters one after the other, none of them broken across lines.

@@ -1,7 +1,8 @@
 //! An episode with all that was flown in it: what every figure looks things up in.
 
 use crate::campaign::Campaign;
-use crate::draw::{Episode, FaultDraw, draw};
+use crate::draw::quantities::{Quantity, quantities};
+use crate::draw::{AppliedEpisode, FaultDraw, draw};
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::report::page::plot::{Color, thinned};
@@ -34,7 +35,9 @@ pub(super) struct EpisodeView<'a> {
     pub(super) replay: &'a Replay,
     pub(super) campaign: &'a Campaign,
     /// What it drew, with times as they happen.
-    pub(super) episode: Episode,
+    pub(super) episode: AppliedEpisode,
+    /// What the campaign draws.
+    pub(super) quantities: Vec<Quantity>,
     /// The flights, that of the controller that was asked for first.
     pub(super) flights: Vec<ControllerTrace<'a>>,
     pub(super) duration_s: f64,
@@ -58,6 +61,7 @@ impl<'a> EpisodeView<'a> {
             replay,
             campaign,
             episode: draw(campaign, replay.episode).applied(campaign),
+            quantities: quantities(campaign),
             flights: std::iter::once(asked).chain(others).collect(),
             duration_s: f64::from(campaign.time.steps) * campaign.time.step_s,
         }

@@ -100,9 +100,9 @@ fn panel(
     };
     let mut marks = Vec::new();
     for agent in 0..scene.campaign.team {
-        let flown = path(agent, |shown| shown.x, f64::INFINITY);
-        let first = flown.first().copied();
-        marks.push(Mark::Line(flown, flight.ink(), Stroke::Solid));
+        let simulated = path(agent, |shown| shown.x, f64::INFINITY);
+        let first = simulated.first().copied();
+        marks.push(Mark::Line(simulated, flight.ink(), Stroke::Solid));
         let reference = path(agent, |shown| shown.r, scene.left_s(flight, agent));
         marks.push(Mark::Line(reference, Color::Truth, Stroke::Dashed));
         marks.push(Mark::Dots(first.into_iter().collect(), flight.ink()));

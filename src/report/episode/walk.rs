@@ -199,7 +199,7 @@ fn sticks(
 ) -> Figure {
     let height_m = walk.map_or(robot.base_height_m, |own| own.walk.gait.pelvis_height_m);
     let panels = scene.flights.iter().map(|flight| {
-        let (mut planned, mut flown) = (Vec::new(), Vec::new());
+        let (mut planned, mut simulated) = (Vec::new(), Vec::new());
         for (k, snapshot) in instants(scene, flight, walk).into_iter().enumerate() {
             let ahead_m = APART_M * k as f64;
             let pose = |pick: fn(&ChannelSample) -> f64| {
@@ -213,14 +213,14 @@ fn sticks(
                 planned.push(Mark::Line(leg, Color::Truth, Stroke::Dashed));
             }
             let [left, right] = pose(|shown| shown.x);
-            flown.push(Mark::Line(right, LEGS[1], Stroke::Solid));
-            flown.push(Mark::Line(left, LEGS[0], Stroke::Solid));
+            simulated.push(Mark::Line(right, LEGS[1], Stroke::Solid));
+            simulated.push(Mark::Line(left, LEGS[0], Stroke::Solid));
         }
         Plot {
             title: flight.name.to_string(),
             x: Axis::new(format!("ahead, m; each pose {APART_M} m further")),
             y: Axis::new("height, m"),
-            marks: planned.into_iter().chain(flown).collect(),
+            marks: planned.into_iter().chain(simulated).collect(),
             equal: true,
             ..Plot::default()
         }
@@ -238,7 +238,7 @@ fn sticks(
         ],
         caption: format!(
             "Agent {agent} from the side at t = {} s: each leg from the pelvis over hip, knee and ankle to heel and toe, at the \
-             joint angles flown. The model's pelvis stands still; the poses are drawn side by side, upright and at the height \
+             joint angles simulated. The model's pelvis stands still; the poses are drawn side by side, upright and at the height \
              of the pelvis planned.",
             times.join(", ")
         ),

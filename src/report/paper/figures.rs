@@ -1,7 +1,7 @@
 //! The counterparts of the paper's figures.
 
 use super::error::PaperError;
-use super::flights::{Scenario, Scenarios};
+use super::scenarios::{Scenario, Scenarios};
 use crate::campaign::Campaign;
 use crate::model::ChannelSample;
 use crate::reference::Reference;
@@ -29,7 +29,7 @@ struct View {
     what: &'static str,
     lines: &'static [Line],
     unit: fn(&str) -> String,
-    flown: Scenario,
+    simulated: Scenario,
 }
 
 /// A line of a figure.
@@ -110,12 +110,12 @@ pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, P
             "N m".into()
         }
     };
-    let view = |number, what, lines, unit, flown| View {
+    let view = |number, what, lines, unit, simulated| View {
         number,
         what,
         lines,
         unit,
-        flown,
+        simulated,
     };
     let of_uavs = [
         view(11, "states", STATES, length, Scenario::Ftc),
@@ -164,7 +164,7 @@ fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
         .enumerate()
         .map(|(channel, name)| {
             let marks = view.lines.iter().map(|line| {
-                let points = flights.series(view.flown, channel, line.pick);
+                let points = flights.series(view.simulated, channel, line.pick);
                 Mark::Line(points.0, line.ink, line.stroke)
             });
             Plot {
@@ -185,13 +185,13 @@ fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
         .map(|line| LegendEntry::of(line.stroke, line.ink, line.name))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
-    let controller = match view.flown {
+    let controller = match view.simulated {
         Scenario::Pid => "PID",
         Scenario::Ftc | Scenario::OnCourse => "FTC",
     };
     let mut caption = format!("First {agent} of the team under the {controller}.");
-    if let Some(lost_s) = flights.lost_s(view.flown) {
-        caption.push_str(&format!(" The flight diverges within {lost_s:.2} s."));
+    if let Some(lost_s) = flights.lost_s(view.simulated) {
+        caption.push_str(&format!(" The episode diverges within {lost_s:.2} s."));
     }
     Figure {
         file: format!("figure-{:02}.svg", view.number),
@@ -231,7 +231,7 @@ fn paths() -> Result<Figure, PaperError> {
     let legend: Vec<LegendEntry> = (0..campaign.team)
         .map(|agent| LegendEntry::line(Color::Series(agent), format!("UAV {agent}")))
         .collect();
-    let title = "Figure 8: planned flight".to_string();
+    let title = "Figure 8: planned path".to_string();
     let caption =
         "Smooth paths through the waypoints of campaigns/waypoints.toml, at rest at both ends."
             .to_string();

@@ -99,14 +99,6 @@ pub(super) fn bottom(values: impl IntoIterator<Item = f64>) -> f64 {
     -top(values.into_iter().map(|value| -value))
 }
 
-/// The root mean square.
-pub(super) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
-    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), value| {
-        (sum + value * value, count + 1.0)
-    });
-    (sum / count).sqrt()
-}
-
 /// A share in percent; a dash for none.
 pub(super) fn percent(share: f64) -> String {
     if share.is_nan() {

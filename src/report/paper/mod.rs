@@ -7,11 +7,11 @@
 mod claims;
 mod error;
 mod figures;
-mod flights;
 mod measures;
+mod scenarios;
 mod writing;
 
 pub use claims::{Claim, claims};
 pub use error::PaperError;
-pub use flights::Scenarios;
+pub use scenarios::Scenarios;
 pub use writing::{claim_dir, paper};

@@ -3,7 +3,7 @@
 use super::claims::{Claim, claims};
 use super::error::PaperError;
 use super::figures;
-use super::flights::Scenarios;
+use super::scenarios::Scenarios;
 use crate::campaign::Campaign;
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::markdown::markdown;
@@ -68,9 +68,9 @@ fn is_ours(dir: &Path) -> bool {
 /// # Errors
 /// If a file cannot be written, or a campaign that is part of the program has become unfit.
 pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
-    let fly = |text, path| Scenarios::fly(Campaign::parse(text, Path::new(path))?);
-    let uavs = fly(UAVS, "campaigns/scenario-a.toml")?;
-    let robots = fly(ROBOTS, "campaigns/paper-robots.toml")?;
+    let simulate = |text, path| Scenarios::simulate(Campaign::parse(text, Path::new(path))?);
+    let uavs = simulate(UAVS, "campaigns/scenario-a.toml")?;
+    let robots = simulate(ROBOTS, "campaigns/paper-robots.toml")?;
     let claims = claims(&uavs, &robots);
     let figures = figures::all(&uavs, &robots)?;
     for figure in &figures {
@@ -104,11 +104,11 @@ fn document(claims: &[Claim]) -> Document {
     let count = |holds: Option<bool>| claims.iter().filter(|claim| claim.holds == holds).count();
     Document {
         title: TITLE.into(),
-        subtitle: "Written by `urts-mc paper`: two deterministic flights in double precision, three UAVs (campaigns/scenario-a.toml) \
+        subtitle: "Written by `urts-mc paper`: two deterministic episodes in double precision, three UAVs (campaigns/scenario-a.toml) \
                    and four robots (campaigns/paper-robots.toml), of which the first is shown."
             .into(),
         lead: vec![format!(
-            "{} of {} claims of Section V hold in these flights, {} do not, {} are not decided.",
+            "{} of {} claims of Section V hold in these episodes, {} do not, {} are not decided.",
             count(Some(true)),
             claims.len(),
             count(Some(false)),

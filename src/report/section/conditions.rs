@@ -8,6 +8,7 @@ use crate::report::run_data::{RunData, whole};
 use crate::results::sensitivity::by_chance;
 use crate::run::replay::command;
 use crate::run::table_reader::TableReader;
+use crate::statistics::SIGNIFICANCE;
 use crate::util::format;
 use std::collections::BTreeMap;
 
@@ -45,7 +46,7 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
         let what = target(sheet, row);
         let p = sheet.real(row, "p_holm");
         // Tables are sorted by strength; of those that chance explains as well, nothing is told.
-        if tested && (p.is_nan() || p > 0.05) {
+        if tested && (p.is_nan() || p > SIGNIFICANCE) {
             continue;
         }
         let before = listed.entry(what.clone()).or_default();
@@ -209,13 +210,12 @@ fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
 /// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where
 /// it does not apply.
 fn sizes(evidence: &RunData, condition: &str) -> Vec<f64> {
-    let of_episode = |episode: u32| {
-        let all = conditions(&evidence.campaign, &draw(&evidence.campaign, episode));
-        let own = all.into_iter().find(|(name, _)| name == condition);
-        own.and_then(|(_, size)| size)
-    };
-    let sizes: Vec<Option<f64>> = (0..evidence.manifest.episodes).map(of_episode).collect();
-    let drawn = by_chance(&evidence.campaign, condition, &sizes);
+    let campaign = &evidence.campaign;
+    let all = conditions(campaign);
+    let measured = all.iter().find(|own| own.key == condition);
+    let size = |episode| measured?.of(&draw(campaign, episode).applied(campaign));
+    let sizes: Vec<Option<f64>> = (0..evidence.manifest.episodes).map(size).collect();
+    let drawn = by_chance(campaign, condition, &sizes);
     drawn
         .into_iter()
         .map(|size| size.unwrap_or(f64::NAN))

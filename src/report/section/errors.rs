@@ -130,7 +130,10 @@ fn failures_of(sheet: &TableReader, row: usize, pair: &str, difference: &str) ->
         Cell::number(format!("{:.0}", of("only_b_failed"))),
         Cell::number(format!("{:.0}", of("both_failed"))),
         Cell::number(format::points(
-            of("failure_rate_difference"),
+            // Over too few replicates there is the plain difference, without an interval.
+            Some(of(difference))
+                .filter(|own| own.is_finite())
+                .unwrap_or_else(|| of("failure_rate_difference")),
             of(&format!("{difference}_lower")),
             of(&format!("{difference}_upper")),
         )),

@@ -1,12 +1,12 @@
 //! Who failed how often, and when.
 
-use crate::campaign::ALL;
+use crate::campaign::{ALL, Campaign};
 use crate::report::notes::caveats;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::{RunData, whole};
-use crate::util::format;
-use crate::util::format::sentence;
+use crate::results::RateMethod;
+use crate::util::format::{self, sentence};
 
 /// Failure rates with intervals, requirements, and the share of episodes still good over time.
 pub(crate) fn section(evidence: &RunData) -> Section {
@@ -54,30 +54,26 @@ fn meaning(evidence: &RunData) -> String {
         "An episode fails if {agents} diverges, or leaves its limits from {} s on ({}). Intervals: {}.",
         f64::from(evidence.campaign.time.settle_step) * evidence.campaign.time.step_s,
         limits.collect::<Vec<_>>().join("; "),
-        kind_of_interval(&evidence.campaign),
+        intervals(&evidence.campaign),
     )
 }
 
-/// What the intervals of failure rates are.
-pub(crate) fn kind_of_interval(campaign: &crate::campaign::Campaign) -> &'static str {
-    if campaign.sampling.replicates().is_some() {
-        "Student's t over the replicates, 95 %"
-    } else if campaign.stop.is_some() {
-        "confidence sequences, 95 % whenever one looks"
-    } else {
-        "Wilson, 95 %; the bound is Clopper-Pearson's"
+/// What the intervals of failure rates are, in full.
+pub(crate) fn intervals(campaign: &Campaign) -> &'static str {
+    match RateMethod::of(campaign) {
+        RateMethod::Replicates => "Student's t over the replicates, 95 %",
+        RateMethod::Sequential => "confidence sequences, 95 % whenever one looks",
+        RateMethod::Wilson => "Wilson, 95 %; the bound is Clopper-Pearson's",
     }
 }
 
 /// The failure rate of a row of the summary.
 pub(crate) fn rate(evidence: &RunData, row: usize, ink: Color) -> Spread {
     let sheet = &evidence.summary;
-    let kinds = ["replicates", "sequential", "wilson"];
-    let interval = kinds.iter().find_map(|kind| {
-        let end = |side: &str| sheet.real(row, &format!("failure_rate_{kind}_{side}"));
-        let ends = [end("lower"), end("upper")];
-        ends.iter().all(|end| end.is_finite()).then_some(ends)
-    });
+    let method = RateMethod::of(&evidence.campaign).name();
+    let end = |side: &str| sheet.real(row, &format!("failure_rate_{method}_{side}"));
+    let ends = [end("lower"), end("upper")];
+    let interval = ends.iter().all(|end| end.is_finite()).then_some(ends);
     Spread {
         scale: Scale::Share,
         value: sheet.real(row, "failure_rate"),

@@ -114,7 +114,7 @@ fn numbers(own: &ChannelController) -> String {
 fn attenuation_explained(evidence: &RunData) -> &'static str {
     match &evidence.manifest.cross_check {
         Some(check) if !check.attenuation.is_empty() => {
-            "Attenuation of the flights that were cross-checked: the square root of the left side of (24) without V(0), the \
+            "Attenuation of the episodes that were cross-checked: the square root of the left side of (24) without V(0), the \
              largest of the channels, beside the certified level; and whether (24) with V(0) holds. A sample shows what \
              happened, the certificate what cannot happen to the linear loop."
         }
@@ -122,7 +122,7 @@ fn attenuation_explained(evidence: &RunData) -> &'static str {
             "No controller of this run has a certificate, so there is no level to compare the episodes with."
         }
         None => {
-            "The attenuation that flights show was not measured: it takes f64 on the CPU; run with --cross-check 32, or replay \
+            "The attenuation of the episodes was not measured: it takes f64 on the CPU; run with --cross-check 32, or replay \
              an episode."
         }
     }

@@ -34,8 +34,8 @@ pub(crate) fn section(evidence: &RunData) -> Section {
             manifest.episodes, manifest.episodes_asked
         ),
     );
-    for leg in &manifest.legs {
-        add("simulated on", engine(leg, manifest.legs.len() > 1));
+    for segment in &manifest.segments {
+        add("simulated on", engine(segment, manifest.segments.len() > 1));
     }
     add(
         "number format",
@@ -93,12 +93,12 @@ fn cross_checked(check: &CrossCheck) -> String {
     )
 }
 
-fn engine(leg: &Segment, several: bool) -> String {
+fn engine(segment: &Segment, several: bool) -> String {
     let Segment {
         engine,
         episodes,
         first,
-    } = leg;
+    } = segment;
     match several {
         true => format!("{engine}: {episodes} episodes from number {first}"),
         false => engine.to_string(),

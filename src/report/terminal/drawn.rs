@@ -1,9 +1,9 @@
 //! The ranges of all that a campaign draws.
 
 use super::text::line;
-use crate::agent::Agent;
 use crate::campaign::Campaign;
-use crate::draw::draw;
+use crate::draw::quantities::{Source, quantities};
+use crate::draw::{AgentDraw, draw};
 use serde_json::{Value, json};
 
 /// Episodes that are drawn to show real ranges.
@@ -19,18 +19,6 @@ struct Subject {
     occurs: Option<[usize; 2]>,
     /// Its quantities with all values, in the order of the file's keys.
     quantities: Vec<(String, Vec<f64>)>,
-}
-
-impl Subject {
-    fn add(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
-        match self.quantities.iter_mut().find(|(own, _)| own == name) {
-            Some((_, all)) => all.extend(values),
-            None => {
-                let values = values.into_iter().collect();
-                self.quantities.push((name.to_string(), values));
-            }
-        }
-    }
 }
 
 /// The ranges, for people.
@@ -105,69 +93,52 @@ fn range(values: &[f64]) -> Option<[f64; 2]> {
 
 /// The agents, the disturbances and the faults, in the campaign's order, with what the first episodes draw for them.
 fn subjects(campaign: &Campaign) -> Vec<Subject> {
-    let subject = |key: String, title: String, occurs| Subject {
-        key,
-        title,
-        occurs,
-        quantities: Vec::new(),
-    };
-    let mut agents = subject(String::new(), String::new(), None);
-    let of_disturbance = |(k, kind)| {
-        let title = format!("disturbance[{k}] {kind}");
-        subject(format!("disturbance[{k}] "), title, None)
-    };
-    let kinds = campaign.disturbances.iter().map(|own| own.kind.name());
-    let mut disturbances: Vec<Subject> = kinds.enumerate().map(of_disturbance).collect();
-    let of_fault = |(k, name)| {
-        let title = format!("fault[{k}] {name}");
-        subject(format!("{title} "), title, Some([0, 0]))
-    };
-    let names = campaign.faults.iter().map(|own| &own.name);
-    let mut faults: Vec<Subject> = names.enumerate().map(of_fault).collect();
-
     let episodes = 0..DRAWS.min(campaign.episodes);
-    let applied = |episode| draw(campaign, episode).applied(campaign);
-    for draws in episodes.flat_map(|episode| applied(episode).agents) {
-        agents.add("mass_scale", [draws.mass_scale]);
-        if let Agent::Uav(_) = campaign.agent {
-            agents.add("inertia_scale", [draws.inertia_scale]);
+    let applied = |episode| draw(campaign, episode).applied(campaign).agents;
+    let draws: Vec<AgentDraw> = episodes.flat_map(applied).collect();
+    let mut all: Vec<Subject> = Vec::new();
+    for quantity in quantities(campaign) {
+        let [key, title] = names(campaign, quantity.source);
+        if all.last().is_none_or(|last| last.title != title) {
+            let occurs = match quantity.source {
+                Source::Fault(index) => {
+                    let having = draws.iter().filter(|draw| draw.faults[index].occurs());
+                    Some([having.count(), draws.len()])
+                }
+                _ => None,
+            };
+            all.push(Subject {
+                key,
+                title,
+                occurs,
+                quantities: Vec::new(),
+            });
         }
-        agents.add("kappa", [draws.kappa]);
-        if campaign.control.delay_s.is_some() {
-            agents.add("control delay_s", [draws.control_delay_s]);
-        }
-        agents.add("initial error", draws.error);
-        agents.add("initial error_rate", draws.error_rate);
-        agents.add("initial error_integral", draws.error_integral);
-        let own = campaign.disturbances.iter().zip(draws.disturbances);
-        for (subject, (disturbance, values)) in disturbances.iter_mut().zip(own) {
-            for (parameter, values) in disturbance.kind.parameters().iter().zip(values) {
-                subject.add(parameter.name, values);
-            }
-        }
-        let own = campaign.faults.iter().zip(draws.faults);
-        for (subject, (fault, draw)) in faults.iter_mut().zip(own) {
-            let there = draw.occurs();
-            subject.occurs = subject
-                .occurs
-                .map(|[with, all]| [with + usize::from(there), all + 1]);
-            let of_time = |value: f64| there.then_some(value);
-            subject.add("onset_s", of_time(draw.onset_s));
-            if fault.duration_s.is_some() {
-                subject.add("duration_s", of_time(draw.duration_s));
-            }
-            if fault.ramp_s.is_some() {
-                subject.add("ramp_s", of_time(draw.ramp_s));
-            }
-            for (parameter, values) in fault.kind.parameters().iter().zip(draw.parameters) {
-                let struck = values.into_iter().zip(&draw.strikes);
-                let struck = struck.filter(|(_, strikes)| **strikes);
-                subject.add(parameter.name, struck.map(|(value, _)| value));
-            }
+        let name = match quantity.source {
+            Source::Control => format!("control {}", quantity.name),
+            Source::Initial => format!("initial {}", quantity.name),
+            _ => quantity.name.to_string(),
+        };
+        let values = draws.iter().flat_map(|draw| quantity.applied(draw));
+        let values = values.map(|(_, value)| value).collect();
+        if let Some(subject) = all.last_mut() {
+            subject.quantities.push((name, values));
         }
     }
-    let mut all = vec![agents];
-    all.append(&mut disturbances);
-    all.append(&mut faults);
     all
+}
+
+/// What precedes the names of a source's quantities, and what it is called.
+fn names(campaign: &Campaign, source: Source) -> [String; 2] {
+    match source {
+        Source::Agent | Source::Control | Source::Initial => [String::new(), String::new()],
+        Source::Disturbance(k, kind) => [
+            format!("disturbance[{k}] "),
+            format!("disturbance[{k}] {}", kind.name()),
+        ],
+        Source::Fault(k) => {
+            let title = format!("fault[{k}] {}", campaign.faults[k].name);
+            [format!("{title} "), title]
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::attenuation;
 use super::conclusion::{in_short, requirements};
+use super::pairs::pairs;
 use super::screening::strata;
 use super::style::heading;
 use super::text::{kind_of_interval, line};
@@ -9,28 +10,23 @@ use crate::agent::ChannelRole;
 use crate::campaign::{ALL, Campaign};
 use crate::draw::quantities::title;
 use crate::report::notes::caveats;
+use crate::results::FailureRate;
 use crate::results::sensitivity::SensitivityResult;
-use crate::results::{FailureRate, Measured, PairedComparison, Ratio};
 use crate::run::Findings;
 use crate::run::manifest::Manifest;
 use crate::run::replay::command;
 use crate::simulation::Times;
 use crate::simulation::cross_check::CrossCheck;
-use crate::statistics::Interval;
+use crate::statistics::SIGNIFICANCE;
 use crate::util::format::{digits, rounded_up};
 use std::path::Path;
 
-/// Channels that are shown one by one.
-const MOST_CHANNELS: usize = 6;
-
 /// Conditions that are shown of each target.
 const STRONGEST: usize = 3;
-/// The p-value, corrected for all conditions of a target, at or below which an effect is shown.
-const SURE: f64 = 0.05;
 
 /// The findings of a run at a glance.
 pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
-    let mut text = flown(campaign, &findings.manifest);
+    let mut text = simulated(campaign, &findings.manifest);
     text.push_str(&failure_rates(campaign, findings));
     for caveat in caveats(campaign, &findings.manifest) {
         line(&mut text, &caveat);
@@ -47,10 +43,13 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
 }
 
 /// What was flown on what, and the cross-check.
-fn flown(campaign: &Campaign, manifest: &Manifest) -> String {
+fn simulated(campaign: &Campaign, manifest: &Manifest) -> String {
     let mut text = String::new();
     let precision = format!("{:?}", manifest.precision).to_lowercase();
-    let engines = manifest.legs.iter().map(|leg| leg.engine.to_string());
+    let engines = manifest
+        .segments
+        .iter()
+        .map(|segment| segment.engine.to_string());
     let engines: Vec<String> = engines.collect();
     line(
         &mut text,
@@ -109,7 +108,7 @@ fn failure_rates(campaign: &Campaign, findings: &Findings) -> String {
                 format!("{} of {}", failures.failed(), failures.n),
                 100.0 * failures.rate(),
                 failures
-                    .interval()
+                    .interval
                     .map_or("-".to_string(), |interval| format!(
                         "{:.2} .. {:.2}%",
                         100.0 * interval.lower,
@@ -153,7 +152,7 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
     line(&mut text, head.trim_end());
     for name in &campaign.controllers {
         let cell = |group: &str| {
-            let row = findings.summary.iter().find(|row| {
+            let row = findings.results.summary.iter().find(|row| {
                 row.failures.controller == *name
                     && *row.failures.stratum == *ALL
                     && row.metric == "rmse"
@@ -173,64 +172,6 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
             cells.push_str(&format!(" {:>34} ", cell(role.name())));
         }
         line(&mut text, cells.trim_end());
-    }
-    text
-}
-
-/// How each pair of controllers compares.
-fn pairs(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    if !findings.comparisons.is_empty() {
-        line(
-            &mut text,
-            &format!(
-                "\n{}: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
-                heading("pair by pair"),
-                if campaign.sampling.replicates().is_some() {
-                    "t over replicates"
-                } else {
-                    "BCa"
-                }
-            ),
-        );
-    }
-    let names = campaign.channels().iter().map(|name| name.len());
-    let width = names.max().unwrap_or(0).max(8);
-    let of_all = findings
-        .comparisons
-        .iter()
-        .filter(|own| *own.stratum == *ALL);
-    for comparison in of_all {
-        line(
-            &mut text,
-            &format!("  {} against {}", comparison.a, comparison.b),
-        );
-        let (shown, left_out) = worth_showing(&comparison.ratios);
-        for ratio in shown {
-            line(
-                &mut text,
-                &format!("    {:<width$}  {}", ratio.name, ratio_text(ratio)),
-            );
-        }
-        if left_out > 0 {
-            let rest = "between these two; comparison.csv has them all";
-            line(
-                &mut text,
-                &format!("    {left_out} more channels lie {rest}"),
-            );
-        }
-        line(
-            &mut text,
-            &format!("    {:<width$}  {}", "failures", failures_text(comparison)),
-        );
-        let diverged = comparison.ratios.first().map(|ratio| ratio.diverged);
-        let diverged: u64 = diverged.iter().flatten().sum();
-        if diverged > 0 {
-            line(
-                &mut text,
-                &format!("    a diverged episode counts as infinitely bad: {diverged} pairs"),
-            );
-        }
     }
     text
 }
@@ -285,10 +226,11 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
 /// What raises failures and errors of each controller, as far as it is sure.
 fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
     let sure: Vec<&SensitivityResult> = findings
+        .results
         .ranking
         .iter()
         .filter(|ranked| ranked.target.kind != "log_ratio")
-        .filter(|ranked| ranked.p_holm.is_some_and(|p_holm| p_holm <= SURE))
+        .filter(|ranked| ranked.p_holm.is_some_and(|p_holm| p_holm <= SIGNIFICANCE))
         .collect();
     let mut text = String::new();
     if sure.is_empty() {
@@ -334,7 +276,12 @@ fn worst(findings: &Findings, out: &Path) -> String {
             heading("worst episode of each controller")
         ),
     );
-    for worst in findings.worst.iter().filter(|worst| worst.rank == 1) {
+    for worst in findings
+        .results
+        .worst
+        .iter()
+        .filter(|worst| worst.rank == 1)
+    {
         line(
             &mut text,
             &format!(
@@ -356,81 +303,10 @@ fn worst(findings: &Findings, out: &Path) -> String {
     text
 }
 
-/// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and
-/// how many are left out.
-fn worth_showing(ratios: &[Ratio]) -> (Vec<&Ratio>, usize) {
-    let (mut shown, mut channels): (Vec<&Ratio>, Vec<&Ratio>) =
-        ratios.iter().partition(|ratio| ratio.scope == "group");
-    let mut left_out = 0;
-    if channels.len() > MOST_CHANNELS {
-        let value = |ratio: &Ratio| ratio.log_ratio.map_or(f64::NAN, |ratio| ratio.value);
-        channels.sort_by(|a, b| value(a).total_cmp(&value(b)));
-        left_out = channels.len() - 2;
-        channels = vec![channels[0], channels[left_out + 1]];
-    }
-    shown.extend(channels);
-    (shown, left_out)
-}
-
-fn ratio_text(ratio: &Ratio) -> String {
-    let wins = ratio.win_rate.map_or(String::new(), |rate| {
-        format!("  wins {:>5.1} %", 100.0 * rate.value)
-    });
-    match ratio.known() {
-        Some(Measured { value, interval }) => {
-            // Of a few episodes every ratio may be the median.
-            let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
-            let interval = known.map_or("[-]".to_string(), |Interval { lower, upper }| {
-                format!("[{}, {}]", times(lower), times(upper))
-            });
-            format!("{:>8} {interval:<19}{wins}", times(value))
-        }
-        None => "no episodes".to_string(),
-    }
-}
-
-fn times(log_ratio: f64) -> String {
-    let ratio = log_ratio.exp();
-    if ratio.is_infinite() {
-        "inf".into()
-    } else {
-        format!("{ratio:.2}x")
-    }
-}
-
-fn failures_text(comparison: &PairedComparison) -> String {
-    let failures = &comparison.failures;
-    let difference = comparison.known().map_or(String::new(), |difference| {
-        let interval = difference.interval.map_or(String::new(), |interval| {
-            format!(
-                " [{:+.2}, {:+.2}]",
-                100.0 * interval.lower,
-                100.0 * interval.upper
-            )
-        });
-        format!("{:+.2} points{interval}, ", 100.0 * difference.value)
-    });
-    format!(
-        "{difference}only {} {}, only {} {}, both {}{}",
-        comparison.a,
-        failures.only_a,
-        comparison.b,
-        failures.only_b,
-        failures.both,
-        comparison.mid_p.map_or(String::new(), |mid_p| format!(
-            ", McNemar mid-p {}",
-            if mid_p < 0.001 {
-                format!("{mid_p:.1e}")
-            } else {
-                format!("{mid_p:.3}")
-            }
-        )),
-    )
-}
-
 /// The failure rates of all episodes.
 fn rates(findings: &Findings) -> Vec<&FailureRate> {
     let mut rates: Vec<&FailureRate> = findings
+        .results
         .summary
         .iter()
         .map(|row| &row.failures)

@@ -1,6 +1,6 @@
 //! What a run found, for programs.
 
-use crate::results::{FailureRate, Measured, Replicated};
+use crate::results::{FailureRate, Measured, RateMethod, Replicated};
 use crate::run::Findings;
 use crate::statistics::{Estimate, Interval};
 use serde_json::{Value, json};
@@ -25,25 +25,26 @@ pub fn findings_json(findings: &Findings) -> Value {
         json!({
             "controller": rate.controller, "stratum": *rate.stratum, "n": rate.n, "failed": rate.failed(),
             "exceeded": rate.exceeded, "diverged": rate.diverged, "failure_rate": rate.rate(),
-            "wilson_95": rate.wilson.map(interval), "sequential_95": rate.sequential.map(interval),
-            "replicates_95": rate.replicates.map(interval), "upper_95": rate.upper_95,
+            "wilson_95": rate.interval_by(RateMethod::Wilson).map(interval),
+            "sequential_95": rate.interval_by(RateMethod::Sequential).map(interval),
+            "replicates_95": rate.interval_by(RateMethod::Replicates).map(interval), "upper_95": rate.upper_95,
         })
     };
     let growth = |(group, growth): &(&'static str, Option<Estimate>)| json!({ "group": group, "log_growth": estimate(*growth) });
     json!({
         "verdict": findings.manifest.verdict,
         "manifest": findings.manifest,
-        "failures": findings.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
+        "failures": findings.results.summary.iter().map(|row| &row.failures).fold(Vec::new(), |mut rates, failures| {
             if rates.last() != Some(&failures) { rates.push(failures); }
             rates
         }).into_iter().map(rate).collect::<Vec<_>>(),
-        "errors": findings.summary.iter().map(|row| json!({
+        "errors": findings.results.summary.iter().map(|row| json!({
             "controller": row.failures.controller, "stratum": *row.failures.stratum, "metric": row.metric, "group": row.group,
             "quantiles": row.quantiles.iter().map(|(share, value, interval_95)| json!({
                 "share": share, "value": value.and_then(finite), "interval_95": interval_95.map(interval),
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "comparisons": findings.comparisons.iter().map(|comparison| json!({
+        "comparisons": findings.results.comparisons.iter().map(|comparison| json!({
             "a": comparison.a, "b": comparison.b, "stratum": *comparison.stratum,
             "both_failed": comparison.failures.both, "only_a_failed": comparison.failures.only_a,
             "only_b_failed": comparison.failures.only_b, "neither_failed": comparison.failures.neither,
@@ -55,7 +56,7 @@ pub fn findings_json(findings: &Findings) -> Value {
                 "log_ratio_replicates": replicated(ratio.over_replicates), "win_rate": measured(ratio.win_rate), "diverged_only_a_only_b_both": ratio.diverged,
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "screening": findings.screenings.iter().map(|screening| json!({
+        "screening": findings.results.screenings.iter().map(|screening| json!({
             "controller": screening.controller, "reference": *screening.reference,
             "strata": screening.harms.iter().enumerate().map(|(index, harm)| json!({
                 "stratum": *harm.stratum, "failure_rate_difference": estimate(harm.failures),
@@ -64,12 +65,12 @@ pub fn findings_json(findings: &Findings) -> Value {
                 "may_grow_most": screening.most_growth.iter().map(|most| most.contains(&index)).collect::<Vec<_>>(),
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "ranking": findings.ranking.iter().map(|ranked| json!({
+        "ranking": findings.results.ranking.iter().map(|ranked| json!({
             "target": ranked.target.kind, "controller": ranked.target.controller, "against": ranked.target.against,
             "group": ranked.target.group, "condition": ranked.condition, "episodes": ranked.effect.n,
             "trend": measured(Some(Measured { value: ranked.effect.trend.value, interval: ranked.interval })), "shape": ranked.effect.shape, "p_holm": ranked.p_holm,
         })).collect::<Vec<_>>(),
-        "worst_episodes": findings.worst.iter().map(|worst| json!({
+        "worst_episodes": findings.results.worst.iter().map(|worst| json!({
             "controller": worst.controller, "rank": worst.rank, "episode": worst.episode, "status": worst.status.word(),
             "largest_error_over_limit": finite(worst.excess), "failed_at_s": worst.failed_at_s,
             "agent": worst.agent, "channel": *worst.channel,

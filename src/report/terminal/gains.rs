@@ -3,8 +3,7 @@
 use super::style::{heading, judged};
 use super::text::line;
 use crate::campaign::{Campaign, FTC, PID, PID_TUNED};
-use crate::controllers;
-use crate::controllers::{GainSet, built_in};
+use crate::controllers::{self, GainSet, built_in};
 use crate::synthesis::{ChannelSynthesis, ControllerGains};
 
 /// The gains of a campaign and what is known about them.

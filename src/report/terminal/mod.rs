@@ -8,6 +8,7 @@ mod effort;
 mod findings;
 mod findings_json;
 mod gains;
+mod pairs;
 mod plan;
 mod replay;
 mod runs;

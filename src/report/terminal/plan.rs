@@ -110,7 +110,7 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             &[fault] => campaign.faults.get(fault).map(|own| &own.name) == Some(&stratum.name),
             _ => false,
         },
-        StratumFaults::RandomQuantity => false,
+        StratumFaults::ByProbability => false,
     };
     let all = campaign.strata.all();
     for (index, stratum) in all.iter().enumerate() {
@@ -131,9 +131,7 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             }
         }
         let faults = match &stratum.faults {
-            StratumFaults::RandomQuantity => {
-                "all faults, each with its own probability".to_string()
-            }
+            StratumFaults::ByProbability => "all faults, each with its own probability".to_string(),
             StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
             StratumFaults::Certain(faults) => {
                 let faults = faults.iter().filter_map(|&k| campaign.faults.get(k));

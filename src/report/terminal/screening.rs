@@ -26,7 +26,7 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
             .controllers
             .iter()
             .filter_map(|name| {
-                let rates = findings.summary.iter().map(|row| &row.failures);
+                let rates = findings.results.summary.iter().map(|row| &row.failures);
                 let mut own = rates.filter(|rate| rate.stratum == stratum.name);
                 own.find(|rate| rate.controller == *name)
             })
@@ -50,7 +50,7 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
 }
 
 fn rate_text(rate: &FailureRate) -> String {
-    let interval = rate.interval().map_or(String::new(), |interval| {
+    let interval = rate.interval.map_or(String::new(), |interval| {
         format!(
             " [{:.1}, {:.1}]",
             100.0 * interval.lower,

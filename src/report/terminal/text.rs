@@ -1,6 +1,7 @@
 //! Lines of what is printed, and words that several of its parts use.
 
 use crate::campaign::Campaign;
+use crate::results::RateMethod;
 use std::fmt::Write;
 
 /// Adds a line.
@@ -11,11 +12,9 @@ pub(super) fn line(text: &mut String, content: &str) {
 
 /// What the intervals of failure rates are.
 pub(super) fn kind_of_interval(campaign: &Campaign) -> &'static str {
-    if campaign.sampling.replicates().is_some() {
-        "t 95 %"
-    } else if campaign.stop.is_some() {
-        "sequential 95 %"
-    } else {
-        "Wilson 95 %"
+    match RateMethod::of(campaign) {
+        RateMethod::Replicates => "t 95 %",
+        RateMethod::Sequential => "sequential 95 %",
+        RateMethod::Wilson => "Wilson 95 %",
     }
 }

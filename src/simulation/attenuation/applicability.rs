@@ -1,9 +1,8 @@
 //! Where (24) applies, as far as the campaign and the draw tell: faults that are continuously differentiable in time.
 //! And why it does not.
 
-use crate::agent::ActuationKind;
-use crate::agent::Agent;
 use crate::agent::robot::LEG_JOINTS;
+use crate::agent::{ActuationKind, Agent};
 use crate::campaign::{
     Campaign, DisturbanceKind, Fault, FaultKind, FaultTarget, IntegralKind, Link, Time,
 };

@@ -39,7 +39,7 @@ pub struct Sample {
     /// f1 of (14) and f2 of (16).
     pub faults: [f64; 2],
     /// The feedback that the observer is told was commanded.
-    pub told: f64,
+    pub applied_feedback: f64,
 }
 
 /// A flight of a channel as far as (24) is taken from it.
@@ -210,7 +210,9 @@ impl AttenuationInequality {
         for (k, sample) in samples.iter().enumerate() {
             let t_s = k as f64 * step_s;
             let numbers = sample.error.iter().chain(&sample.estimate);
-            let mut numbers = numbers.chain(&sample.faults).chain([&sample.told]);
+            let mut numbers = numbers
+                .chain(&sample.faults)
+                .chain([&sample.applied_feedback]);
             if !numbers.all(|number| number.is_finite()) {
                 return Err(NotApplicable::NotFinite { t_s });
             }
@@ -218,7 +220,7 @@ impl AttenuationInequality {
             let [sum, size] = self.terms(&estimate).fold([0.0, 0.0], |[sum, size], term| {
                 [sum + term, size + term.abs()]
             });
-            if (sample.told - sum).abs() > ROUNDING * (1.0 + size) {
+            if (sample.applied_feedback - sum).abs() > ROUNDING * (1.0 + size) {
                 return Err(NotApplicable::OtherFeedback { t_s });
             }
             if k > 0 {
@@ -263,9 +265,9 @@ impl AttenuationInequality {
     fn start(&self, sample: &Sample) -> Full {
         let mut full = [0.0; MOST_STATES];
         full[..ERROR_STATES].copy_from_slice(&sample.estimate[..ERROR_STATES]);
-        let flown = sample.estimate[ERROR_STATES..].chunks(FLOWN_TAPS);
-        for ((first, taps), flown) in self.taps().into_iter().zip(flown) {
-            for (tap, &value) in flown.iter().enumerate().take(taps) {
+        let simulated = sample.estimate[ERROR_STATES..].chunks(FLOWN_TAPS);
+        for ((first, taps), simulated) in self.taps().into_iter().zip(simulated) {
+            for (tap, &value) in simulated.iter().enumerate().take(taps) {
                 full[first + tap] = value;
             }
         }

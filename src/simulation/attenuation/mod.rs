@@ -73,11 +73,11 @@ impl Start {
     /// A campaign that flies the start and nothing more. What is drawn stays the same.
     #[must_use]
     pub fn campaign(self, whole: &Campaign) -> Campaign {
-        let mut campaign = whole.clone();
-        campaign.time.step_s /= f64::from(self.finer);
-        campaign.time.steps = self.finer * self.steps;
-        campaign.time.settle_step = 0;
-        campaign
+        whole.clone().with(|campaign| {
+            campaign.time.step_s /= f64::from(self.finer);
+            campaign.time.steps = self.finer * self.steps;
+            campaign.time.settle_step = 0;
+        })
     }
 }
 
@@ -214,7 +214,7 @@ fn sample(snapshot: &Snapshot, agent: usize, channel: usize) -> Sample {
         error: [held.integral, shown.e, shown.e_rate],
         estimate: held.observer,
         faults: [shown.f1, shown.f2],
-        told: held.told,
+        applied_feedback: held.applied_feedback,
     }
 }
 

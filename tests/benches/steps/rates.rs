@@ -33,8 +33,8 @@ pub(crate) fn measure(
             if simd.is_some_and(|simd| !simd.is_available()) {
                 continue;
             }
-            let mut campaign = campaign.clone();
-            campaign.controllers = vec![(*controller).to_string()];
+            let alone = vec![(*controller).to_string()];
+            let campaign = campaign.clone().with(|own| own.controllers = alone);
             let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
             let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
             let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
@@ -49,7 +49,7 @@ pub(crate) fn measure(
                     let time = pool.install(|| {
                         let start = processor_time();
                         for _ in 0..iterations {
-                            black_box(cpu.fly(0..episodes, &|_| ()));
+                            black_box(cpu.simulate(0..episodes, &|_| ()));
                         }
                         processor_time() - start
                     });

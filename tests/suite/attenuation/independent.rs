@@ -112,7 +112,7 @@ fn taps(case: &Case, a: &DMatrix<f64>, t_s: f64, since_s: f64) -> [DVector<f64>;
 
 /// Flies with the Runge-Kutta method at a quarter of the step or a finer one, and integrates both sides of (24)
 /// alongside.
-fn fly(case: &Case, step_s: f64, finer: usize) -> Flown {
+fn simulate(case: &Case, step_s: f64, finer: usize) -> Flown {
     let channel = augmented_channel(&UAV.design);
     let k = DMatrix::from_row_slice(1, STATES, &UAV.ftc.k);
     let l = DMatrix::from_fn(STATES, 3, |i, j| UAV.ftc.l[i][j]);
@@ -172,7 +172,7 @@ fn fly(case: &Case, step_s: f64, finer: usize) -> Flown {
                 error: [state[0], state[1], state[2]],
                 estimate: FLOWN.map(|i| state[3 + i]),
                 faults,
-                told: (&k * state.rows(3, STATES))[0],
+                applied_feedback: (&k * state.rows(3, STATES))[0],
             });
         }
         // Within a step the taps are those that exist at its start.
@@ -210,14 +210,14 @@ fn difference(found: &Attenuation, expected: &Attenuation) -> f64 {
 #[test]
 fn val_both_sides_of_24_are_those_of_plain_formulas_and_converge_with_the_step() {
     let differences = [0.004, 0.002, 0.001].map(|step_s| {
-        let flown = fly(&MIXED, step_s, 4);
-        let found = judged(step_s, &flown.samples).unwrap();
+        let simulated = simulate(&MIXED, step_s, 4);
+        let found = judged(step_s, &simulated.samples).unwrap();
         println!(
             "{step_s} s: {found:?}, level {:.6} against {:.6}",
             found.level(),
-            flown.expected.level()
+            simulated.expected.level()
         );
-        difference(&found, &flown.expected)
+        difference(&found, &simulated.expected)
     });
     println!("relative differences {differences:?}");
     // Second order: a quarter per halving, with room for what the next order adds.
@@ -229,7 +229,7 @@ fn val_both_sides_of_24_are_those_of_plain_formulas_and_converge_with_the_step()
 
 #[test]
 fn a_start_in_small_steps_adds_up_with_the_rest() {
-    let (coarse, fine) = (fly(&MIXED, 0.004, 4), fly(&MIXED, 0.001, 1));
+    let (coarse, fine) = (simulate(&MIXED, 0.004, 4), simulate(&MIXED, 0.001, 1));
     // 0.4 s: the last tap begins there.
     let found = judged_in_two(
         (0.004, &coarse.samples),
@@ -252,7 +252,7 @@ fn a_start_in_small_steps_adds_up_with_the_rest() {
 
 #[test]
 fn the_comparison_notices_samples_that_are_off_by_a_hundredth() {
-    let flown = fly(&MIXED, 0.001, 4);
+    let simulated = simulate(&MIXED, 0.001, 4);
     let changes: [fn(&mut Sample); 4] = [
         |sample| sample.faults[0] *= 1.01,
         |sample| sample.faults[1] *= 1.01,
@@ -260,10 +260,10 @@ fn the_comparison_notices_samples_that_are_off_by_a_hundredth() {
         |sample| sample.estimate[6] *= 1.05,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut samples = flown.samples.clone();
+        let mut samples = simulated.samples.clone();
         samples.iter_mut().for_each(change);
         let found = judged(0.001, &samples).unwrap();
-        let off = difference(&found, &flown.expected);
+        let off = difference(&found, &simulated.expected);
         println!("change {index}: {off:.2e}");
         assert!(off > 1e-2, "change {index}: {off:e}");
     }
@@ -271,16 +271,16 @@ fn the_comparison_notices_samples_that_are_off_by_a_hundredth() {
 
 #[test]
 fn the_attenuation_does_not_depend_on_the_size_of_the_disturbances() {
-    let flown = fly(&MIXED, 0.002, 2);
-    let small = judged(0.002, &flown.samples).unwrap();
-    let scaled: Vec<Sample> = flown
+    let simulated = simulate(&MIXED, 0.002, 2);
+    let small = judged(0.002, &simulated.samples).unwrap();
+    let scaled: Vec<Sample> = simulated
         .samples
         .iter()
         .map(|sample| Sample {
             error: sample.error.map(|x| 8.0 * x),
             estimate: sample.estimate.map(|x| 8.0 * x),
             faults: sample.faults.map(|x| 8.0 * x),
-            told: 8.0 * sample.told,
+            applied_feedback: 8.0 * sample.applied_feedback,
         })
         .collect();
     let large = judged(0.002, &scaled).unwrap();
@@ -299,8 +299,8 @@ fn an_initial_error_alone_exceeds_the_certified_level_and_yet_24_holds() {
         faults: [|t| sine(t, [0.0, 1e-6, 3.0, 0.0]), zero],
         duration_s: 10.0,
     };
-    let flown = fly(&case, 0.002, 2);
-    let found = judged(0.002, &flown.samples).unwrap();
+    let simulated = simulate(&case, 0.002, 2);
+    let found = judged(0.002, &simulated.samples).unwrap();
     println!(
         "level {:.3e}, weighted {:.6}, V(0) {:.6}",
         found.level(),
@@ -405,8 +405,8 @@ fn flights_from_rest_stay_below_the_norm_of_equal_disturbances() {
             faults,
             duration_s: 20.0,
         };
-        let flown = fly(&case, 0.005, 2);
-        let found = judged(0.005, &flown.samples).unwrap();
+        let simulated = simulate(&case, 0.005, 2);
+        let found = judged(0.005, &simulated.samples).unwrap();
         println!(
             "signal {index}: level {:.4}, bound {bound:.4}",
             found.level()
@@ -418,9 +418,9 @@ fn flights_from_rest_stay_below_the_norm_of_equal_disturbances() {
 
 #[test]
 fn what_the_theorem_is_not_about_is_said() {
-    let flown = fly(&MIXED, 0.002, 2);
+    let simulated = simulate(&MIXED, 0.002, 2);
     let with = |change: &dyn Fn(usize, &mut Sample)| {
-        let mut samples = flown.samples.clone();
+        let mut samples = simulated.samples.clone();
         for (k, sample) in samples.iter_mut().enumerate() {
             change(k, sample);
         }
@@ -434,7 +434,7 @@ fn what_the_theorem_is_not_about_is_said() {
     assert!(matches!(jump, NotApplicable::Unresolved), "{jump}");
     let cut = with(&|k, sample| {
         if k == 700 {
-            sample.told -= 1e-3;
+            sample.applied_feedback -= 1e-3;
         }
     });
     assert_eq!(cut, NotApplicable::OtherFeedback { t_s: 700.0 * 0.002 });
@@ -446,13 +446,13 @@ fn what_the_theorem_is_not_about_is_said() {
     assert_eq!(lost, NotApplicable::NotFinite { t_s: 900.0 * 0.002 });
     let integral = with(&|k, sample| sample.error[0] += 0.1 * k as f64 * 0.002);
     assert_eq!(integral, NotApplicable::OtherIntegral);
-    let short = judged(0.002, &flown.samples[..5]).unwrap_err();
+    let short = judged(0.002, &simulated.samples[..5]).unwrap_err();
     assert!(matches!(short, NotApplicable::Unresolved), "{short}");
     let calm = Sample {
         error: [0.0; 3],
         estimate: [0.0; 7],
         faults: [0.0; 2],
-        told: 0.0,
+        applied_feedback: 0.0,
     };
     let still = judged(0.002, &[calm; 50]);
     assert_eq!(still, Err(NotApplicable::NoModelError));

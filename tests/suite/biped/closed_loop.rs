@@ -110,19 +110,20 @@ fn the_comparison_notices_a_changed_digit_of_a_gain_or_an_inertia() {
         gains[k] += change;
         wrong.push(difference(&scenario(case), case, gains));
     }
-    let mut other: [Campaign; 3] = std::array::from_fn(|_| scenario(case));
-    for (campaign, change) in other.iter_mut().zip(0..) {
-        let Agent::Biped(biped) = &mut campaign.agent else {
-            panic!("scenario-biped is of robots");
-        };
-        let joint = &mut biped.robot.legs[0].joints[3];
-        match change {
-            // 1.932 kg, 0.01 kg m^2; a damping of which the feedforward knows acts only on the errors.
-            0 => joint.body.mass_kg += 0.001,
-            1 => joint.armature_kg_m2 += 1e-5,
-            _ => joint.damping_n_m_s += 1e-3,
-        }
-    }
+    let other: [Campaign; 3] = std::array::from_fn(|change| {
+        scenario(case).with(|campaign| {
+            let Agent::Biped(biped) = &mut campaign.agent else {
+                panic!("scenario-biped is of robots");
+            };
+            let joint = &mut biped.robot.legs[0].joints[3];
+            match change {
+                // 1.932 kg, 0.01 kg m^2; a damping of which the feedforward knows acts only on the errors.
+                0 => joint.body.mass_kg += 0.001,
+                1 => joint.armature_kg_m2 += 1e-5,
+                _ => joint.damping_n_m_s += 1e-3,
+            }
+        })
+    });
     wrong.extend(other.map(|campaign| difference(&campaign, case, gains(case))));
     let mut uncoupled = case.clone();
     uncoupled["coupling"] = Value::from(0.9999);

@@ -236,7 +236,7 @@ impl World {
     }
 
     /// What the team shows at every step, by the classical Runge-Kutta method.
-    fn fly(&self) -> Vec<Vec<[ChannelSample; JOINTS]>> {
+    fn simulate(&self) -> Vec<Vec<[ChannelSample; JOINTS]>> {
         let h = self.campaign.time.step_s;
         let mut team: Vec<State> = (0..self.campaign.team).map(|a| self.start(a)).collect();
         let mut shown = vec![];
@@ -301,7 +301,7 @@ fn differences(campaign: &Campaign, world: &World) -> Vec<(&'static str, f64)> {
     let gains = gains(campaign);
     let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
     let snapshots = cpu.trace(world.episode.index, 0, 1).1;
-    let expected = world.fly();
+    let expected = world.simulate();
     let pairs = || {
         let steps = snapshots.iter().zip(&expected);
         let agents = steps.flat_map(|(ours, theirs)| ours.agents.iter().zip(theirs));

@@ -12,14 +12,14 @@ use urts_mc::model::lanes::Lane;
 #[cfg(target_arch = "x86_64")]
 use urts_mc::model::lanes::simd::{F32x8, F32x16};
 
-fn flown(
+fn simulated(
     campaign: &Campaign,
     precision: Precision,
     simd: Option<Simd>,
     episodes: Range<u32>,
 ) -> Vec<EpisodeResult> {
     let gains = gains(campaign);
-    Cpu::new(campaign, &gains.loops(), precision, simd).fly(episodes, &|_| ())
+    Cpu::new(campaign, &gains.loops(), precision, simd).simulate(episodes, &|_| ())
 }
 
 fn available() -> impl Iterator<Item = Simd> {
@@ -33,15 +33,15 @@ fn eight_and_sixteen_robots_side_by_side_give_the_same_bits() {
         return;
     }
     for actuation in ["full", "limited"] {
-        let mut campaign = everything(actuation);
-        campaign.time.steps = 1000;
+        let campaign = everything(actuation).with(|own| own.time.steps = 1000);
         // One block in full, and one with lanes to spare.
         let [eight, sixteen] = [Simd::Avx2, Simd::Avx512]
-            .map(|simd| flown(&campaign, Precision::F32, Some(simd), 0..21));
+            .map(|simd| simulated(&campaign, Precision::F32, Some(simd), 0..21));
         assert_eq!(eight.len(), 21);
         for (eight, sixteen) in eight.iter().zip(&sixteen) {
             // As text, in which a diverged robot's not-a-number equals itself.
-            let [eight, sixteen] = [eight, sixteen].map(|flown| format!("{:?}", flown.outcomes));
+            let [eight, sixteen] =
+                [eight, sixteen].map(|simulated| format!("{:?}", simulated.outcomes));
             assert!(eight == sixteen);
         }
     }
@@ -54,17 +54,18 @@ fn single_precision_stays_within_the_contract_on_walks() {
         "initial.error.normal.std=0.005",
         "initial.error_rate.normal.std=0.005",
     ];
-    let mut campaign = altered("biped-paper", &slightly);
-    campaign.controllers.truncate(1);
+    let campaign = altered("biped-paper", &slightly).with(|own| own.controllers.truncate(1));
     let episodes = 0..4;
-    let double = flown(&campaign, Precision::F64, None, episodes.clone());
-    let outcomes = |flown: &[EpisodeResult]| -> Vec<AgentOutcome> {
-        let all = flown.iter().flat_map(|flown| flown.outcomes[0].clone());
+    let double = simulated(&campaign, Precision::F64, None, episodes.clone());
+    let outcomes = |simulated: &[EpisodeResult]| -> Vec<AgentOutcome> {
+        let all = simulated
+            .iter()
+            .flat_map(|simulated| simulated.outcomes[0].clone());
         all.collect()
     };
     let double = outcomes(&double);
     for simd in available() {
-        let single = flown(&campaign, Precision::F32, Some(simd), episodes.clone());
+        let single = simulated(&campaign, Precision::F32, Some(simd), episodes.clone());
         let mut worst: f64 = 0.0;
         for (double, single) in double.iter().zip(outcomes(&single)) {
             assert!(!double.diverged && double.failed_step.is_none());
@@ -100,8 +101,7 @@ fn with_and_without<L: Lane>(campaign: &Campaign, wild: usize) -> [Vec<Vec<Agent
 }
 
 fn diverges_alone<L: Lane>(wild: usize) {
-    let mut campaign = everything("limited");
-    campaign.time.steps = 1000;
+    let campaign = everything("limited").with(|own| own.time.steps = 1000);
     let [wild_run, calm_run] = with_and_without::<L>(&campaign, wild);
     assert!(wild_run[wild][0].diverged && !calm_run[wild][0].diverged);
     for (episode, (with, without)) in wild_run.iter().zip(&calm_run).enumerate() {

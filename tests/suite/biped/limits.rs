@@ -1,6 +1,6 @@
 //! Torques at their limits.
 
-use crate::common::{altered, fly};
+use crate::common::{altered, simulate};
 use urts_mc::agent::Agent;
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
@@ -26,10 +26,10 @@ fn torques(campaign: &Campaign, precision: Precision) -> Vec<[f64; 3]> {
     };
     let limits = biped.robot.joints().map(|joint| joint.torque_max_n_m);
     let limits: Vec<f64> = limits.collect();
-    let flown = fly(campaign, precision);
-    let agents = flown
+    let simulated = simulate(campaign, precision);
+    let agents = simulated
         .iter()
-        .flat_map(|flown| flown.outcomes.iter().flatten());
+        .flat_map(|simulated| simulated.outcomes.iter().flatten());
     agents
         .flat_map(|agent| agent.channels.iter().zip(&limits))
         .map(|(joint, &limit)| [joint.u_max, joint.saturated_fraction, limit])

@@ -72,7 +72,7 @@ points_m = [[0.0, 0.0], [1.0, 0.0]] =>   :: reference.points_m (line 18) = absen
             let standing = [("kind = \"walk\"", "kind = \"sinusoid\""), (POINTS, "")];
             walk(&[&standing, changes].concat())
         },
-        "seed = 11 => seed = 12 :: disturbance[0].kind (line 29) = \"ground-reaction\": the ground answers a walk; set reference.kind",
+        "seed = 11 => seed = 12 :: disturbance[0].kind (line 29) = \"ground-reaction\": a ground reaction needs a walking reference; set reference.kind",
     );
 }
 

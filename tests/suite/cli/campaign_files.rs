@@ -438,7 +438,7 @@ fn the_step_that_an_error_advises_is_accepted() {
 
     let place = Place::with(&with("0.03"));
     let words = [
-        "error: c.toml: time.step_s = 0.03: ",
+        "error: c.toml: time.step_s (line 9) = 0.03: ",
         "is unstable at the pole",
         "of \"pid\"",
     ];

@@ -195,6 +195,6 @@ fn designs_and_stops_that_cannot_be_are_refused() {
     Place::with(&sampled).refuses(
         &["run", "c.toml", "--episodes", "6"],
         2,
-        &["episodes (line 4) = 6", "simulate 8 episodes"],
+        &["--episodes = 6", "simulate 8 episodes"],
     );
 }

@@ -26,7 +26,14 @@ fn edited() -> String {
 }
 
 /// What is the same in the tables of two runs whose campaigns agree.
-const TABLES: [&str; 4] = ["episodes", "channels", "summary", "comparison"];
+const TABLES: [&str; 6] = [
+    "episodes",
+    "channels",
+    "summary",
+    "comparison",
+    "ranking",
+    "worst",
+];
 
 #[test]
 fn a_run_with_settings_is_that_of_the_edited_file_and_remembers_them() {
@@ -158,7 +165,11 @@ fn settings_that_cannot_be_are_refused_before_anything_is_written() {
             ),
             (
                 "agent.mass_kg=2 kg",
-                &["'agent.mass_kg=2 kg'", "is no TOML value", "write a number"],
+                &[
+                    "'agent.mass_kg=2 kg'",
+                    "is not a TOML value",
+                    "write a number",
+                ],
             ),
             (
                 "agent.teem=3",

@@ -151,7 +151,7 @@ fn a_replay_draws_every_channel_and_every_controller_and_shades_the_faults_it_me
 const LABELS_BELOW: f64 = 4.01;
 
 /// What is drawn of a flight against what it showed.
-fn agrees(panel: &str, colour: &str, flown: &Replay, pick: impl Fn(usize) -> f64) {
+fn agrees(panel: &str, colour: &str, simulated: &Replay, pick: impl Fn(usize) -> f64) {
     let drawn = lines(panel, colour);
     assert_eq!(drawn.len(), 1, "{colour}");
     let ((t0, per_px), (v0, of_px)) = (axis(panel, "middle", "x"), axis(panel, "end", "y"));
@@ -176,14 +176,14 @@ fn agrees(panel: &str, colour: &str, flown: &Replay, pick: impl Fn(usize) -> f64
             "{t_s}: {value} {expected}"
         );
     }
-    assert_eq!(flown.snapshots.len(), 201);
+    assert_eq!(simulated.snapshots.len(), 201);
 }
 
 #[test]
 fn the_curves_are_the_numbers_flown() {
     let place = struck();
     place.succeeds(&["replay", "out", "--episode", "0"]);
-    let flown = replay(&place.path("out"), 0, "ftc", None).unwrap();
+    let simulated = replay(&place.path("out"), 0, "ftc", None).unwrap();
     let page = place.read("out/replay-0-ftc.html");
     // The first agent that is drawn is the one that fared worst.
     let (_, heading) = page.split_once("<h2>Agent ").unwrap();
@@ -191,17 +191,19 @@ fn the_curves_are_the_numbers_flown() {
     let errors = panels(heading);
     let z = errors[2];
     assert!(z.contains("aria-label=\"z: e, m over t, s\""), "{z:.200}");
-    let of_asked = |k: usize| flown.snapshots[k].agents[agent][2].e;
-    agrees(z, "var(--series-0)", &flown, of_asked);
-    for (other, colour) in flown
+    let of_asked = |k: usize| simulated.snapshots[k].agents[agent][2].e;
+    agrees(z, "var(--series-0)", &simulated, of_asked);
+    for (other, colour) in simulated
         .others
         .iter()
         .zip(["var(--series-1)", "var(--series-2)"])
     {
-        agrees(z, colour, &flown, |k| other.snapshots[k].agents[agent][2].e);
+        agrees(z, colour, &simulated, |k| {
+            other.snapshots[k].agents[agent][2].e
+        });
     }
-    agrees(z, "var(--series-3)", &flown, |k| {
-        flown.snapshots[k].agents[agent][2].e_hat
+    agrees(z, "var(--series-3)", &simulated, |k| {
+        simulated.snapshots[k].agents[agent][2].e_hat
     });
 }
 
@@ -209,11 +211,17 @@ fn the_curves_are_the_numbers_flown() {
 fn the_other_flights_of_a_replay_are_those_of_their_own_replays() {
     let place = struck();
     let out = place.path("out");
-    let flown = replay(&out, 1, "pid", None).unwrap();
-    let names = flown.others.iter().map(|other| other.controller);
+    let simulated = replay(&out, 1, "pid", None).unwrap();
+    let names = simulated.others.iter().map(|other| other.controller);
     assert_eq!(names.collect::<Vec<_>>(), [0, 2]);
-    for other in &flown.others {
-        let own = replay(&out, 1, &flown.campaign.controllers[other.controller], None).unwrap();
+    for other in &simulated.others {
+        let own = replay(
+            &out,
+            1,
+            &simulated.campaign.controllers[other.controller],
+            None,
+        )
+        .unwrap();
         assert_eq!(own.outcomes, other.outcomes);
         let last =
             |replay: &[urts_mc::model::episode::Snapshot]| replay[200].agents[2][5].x.to_bits();
@@ -270,7 +278,7 @@ fn a_robot_shows_its_walk_and_itself() {
     let run = [&["run", "c.toml", "--out", "out"], &short[..]].concat();
     // The walk takes longer than that, which is noted.
     assert_eq!(place.program(&run).code, 0);
-    let flown = replay(&place.path("out"), 0, "ftc", None).unwrap();
+    let simulated = replay(&place.path("out"), 0, "ftc", None).unwrap();
     place.succeeds(&["replay", "out", "--episode", "0"]);
     let page = place.read("out/replay-0-ftc.html");
     check_markup(&page);
@@ -291,7 +299,7 @@ fn a_robot_shows_its_walk_and_itself() {
     for ink in ["var(--series-3)", "var(--series-4)"] {
         assert_eq!(lines(sticks, ink).len(), 7, "{ink}");
     }
-    for name in flown.campaign.channels() {
+    for name in simulated.campaign.channels() {
         assert!(page.contains(&format!(">{name}<")), "{name}");
     }
 }

@@ -15,9 +15,9 @@ fn actuator(kind: &str, more: &str) -> String {
 /// Holds a fault against what it must make of the wanted command at each step; before its onset it makes nothing of it.
 #[track_caller]
 fn holds(fault: &str, expected: impl Fn(usize, f64) -> f64) {
-    let flown = of_x(fault);
+    let simulated = of_x(fault);
     let mut changed = 0;
-    for (step, shown) in flown.iter().enumerate() {
+    for (step, shown) in simulated.iter().enumerate() {
         let wanted = wanted(shown);
         let expected = if step < ONSET {
             wanted
@@ -91,31 +91,31 @@ fn val_an_oscillation_is_added() {
 
 #[test]
 fn val_a_stuck_actuator_stays_where_it_was() {
-    let flown = of_x(&actuator("stuck", "duration_s = 0.1"));
+    let simulated = of_x(&actuator("stuck", "duration_s = 0.1"));
     for step in ONSET..ONSET + 50 {
-        near(flown[step].u, flown[ONSET - 1].u, "u while stuck");
+        near(simulated[step].u, simulated[ONSET - 1].u, "u while stuck");
     }
     near(
-        flown[ONSET + 50].u,
-        wanted(&flown[ONSET + 50]),
+        simulated[ONSET + 50].u,
+        wanted(&simulated[ONSET + 50]),
         "u when it is free again",
     );
-    assert!((flown[ONSET + 20].u - wanted(&flown[ONSET + 20])).abs() > 1e-3);
+    assert!((simulated[ONSET + 20].u - wanted(&simulated[ONSET + 20])).abs() > 1e-3);
 }
 
 #[test]
 fn val_a_rate_limit_lets_the_command_follow_as_fast_as_it_may() {
     let limit = 11.0 * STEP_S;
-    let flown = of_x(&actuator("rate-limit", "rate = 11.0\nduration_s = 0.4"));
+    let simulated = of_x(&actuator("rate-limit", "rate = 11.0\nduration_s = 0.4"));
     let mut limited = 0;
-    for step in ONSET..flown.len() {
-        let before = flown[step - 1].u;
-        let mut expected = wanted(&flown[step]);
+    for step in ONSET..simulated.len() {
+        let before = simulated[step - 1].u;
+        let mut expected = wanted(&simulated[step]);
         if step < ONSET + 200 {
             expected = expected.clamp(before - limit, before + limit);
         }
-        near(flown[step].u, expected, "u within its rate");
-        limited += usize::from((expected - wanted(&flown[step])).abs() > 1e-6);
+        near(simulated[step].u, expected, "u within its rate");
+        limited += usize::from((expected - wanted(&simulated[step])).abs() > 1e-6);
     }
     assert!(limited > 20, "{limited}");
 }
@@ -124,17 +124,17 @@ fn val_a_rate_limit_lets_the_command_follow_as_fast_as_it_may() {
 fn val_a_delayed_command_is_an_old_one() {
     // 7 ms are three and a half steps: four.
     let fault = actuator("delay", "delay_s = 0.0071");
-    let flown = of_x(&fault);
-    for step in 0..flown.len() {
+    let simulated = of_x(&fault);
+    for step in 0..simulated.len() {
         let source = if step < ONSET { step } else { step - 4 };
-        near(flown[step].u, wanted(&flown[source]), "u");
+        near(simulated[step].u, wanted(&simulated[source]), "u");
     }
     // At the beginning there is nothing older than the first.
-    let flown = of_x(&fault.replace("onset_s = 0.3", ""));
+    let simulated = of_x(&fault.replace("onset_s = 0.3", ""));
     for step in 1..30_usize {
         near(
-            flown[step].u,
-            wanted(&flown[step.saturating_sub(4)]),
+            simulated[step].u,
+            wanted(&simulated[step.saturating_sub(4)]),
             "u at the start",
         );
     }
@@ -148,14 +148,14 @@ fn val_an_intermittent_loss_hits_its_share_of_the_slots() {
     )
     .replace("channels = [1]", "channels = [1, 2, 3]");
     let campaign = campaign(&fault);
-    let flown = flight(&campaign);
+    let simulated = flight(&campaign);
     let (mut hits, mut slots) = (0, 0);
     for agent in [0, 1] {
         // z carries the weight, which the formula of `wanted` takes for a fault: x and y are enough.
         for channel in [0, 1] {
             for slot in 0..(campaign.time.steps as usize - ONSET) / 5 {
                 let of_slot = (ONSET + 5 * slot..ONSET + 5 * slot + 5).map(|step| {
-                    let shown = &flown[step][agent][channel];
+                    let shown = &simulated[step][agent][channel];
                     let hit = (shown.u - 0.5 * wanted(shown)).abs() < 1e-9;
                     assert!(hit || (shown.u - wanted(shown)).abs() < 1e-9);
                     hit
@@ -181,13 +181,13 @@ fn val_an_intermittent_loss_hits_its_share_of_the_slots() {
 #[test]
 fn val_a_blocked_link_holds_the_last_command_of_all_channels() {
     let fault = "[[fault]]\ntarget = \"network\"\nkind = \"denial-of-service\"\nonset_s = 0.3\nburst_s = 0.01\nshare = 0.5\n";
-    let flown = flight(&campaign(fault));
+    let simulated = flight(&campaign(fault));
     let mut blocked = [0, 0];
-    for step in ONSET..flown.len() {
+    for step in ONSET..simulated.len() {
         for (agent, blocked) in blocked.iter_mut().enumerate() {
             let of = |channel: usize| {
-                let shown = &flown[step][agent][channel];
-                let held = shown.u - flown[step - 1][agent][channel].u;
+                let shown = &simulated[step][agent][channel];
+                let held = shown.u - simulated[step - 1][agent][channel].u;
                 assert!(held.abs() < 1e-9 || (shown.u - wanted(shown)).abs() < 1e-9);
                 held.abs() < 1e-12
             };
@@ -206,18 +206,18 @@ fn val_a_blocked_link_holds_the_last_command_of_all_channels() {
 #[test]
 fn val_a_replay_plays_the_window_before_its_onset_again_and_again() {
     let fault = "[[fault]]\ntarget = \"network\"\nkind = \"replay\"\nchannels = [1]\nonset_s = 0.3\nwindow_s = 0.04\nduration_s = 0.1\n";
-    let flown = of_x(fault);
+    let simulated = of_x(fault);
     for step in ONSET..ONSET + 50 {
         let source = ONSET - 20 + (step - ONSET) % 20;
         near(
-            flown[step].u,
-            wanted(&flown[source]),
+            simulated[step].u,
+            wanted(&simulated[source]),
             "u while it is replayed",
         );
     }
     near(
-        flown[ONSET + 50].u,
-        wanted(&flown[ONSET + 50]),
+        simulated[ONSET + 50].u,
+        wanted(&simulated[ONSET + 50]),
         "u afterwards",
     );
 }
@@ -225,11 +225,11 @@ fn val_a_replay_plays_the_window_before_its_onset_again_and_again() {
 #[test]
 fn val_interference_is_a_share_of_the_others_last_commands() {
     let fault = "[[fault]]\ntarget = \"network\"\nkind = \"interference\"\nonset_s = 0.3\nmagnitude = 0.1\n[[initial.agents]]\nerror = 0.02\n[[initial.agents]]\nerror = -0.04\n";
-    let flown = flight(&campaign(fault));
-    for step in ONSET..flown.len() {
+    let simulated = flight(&campaign(fault));
+    for step in ONSET..simulated.len() {
         for (own, other) in [(0, 1), (1, 0)] {
-            let shown = &flown[step][own][X];
-            let leaked = 0.1 * flown[step - 1][other][X].u;
+            let shown = &simulated[step][own][X];
+            let leaked = 0.1 * simulated[step - 1][other][X].u;
             near(shown.u, wanted(shown) + leaked, "u");
         }
     }

@@ -8,13 +8,14 @@ use urts_mc::campaign::Campaign;
 fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {
     for name in ["uav_faults", "thrust_faults", "biped_faults"] {
         let path = repository(&format!("tests/suite/gpu/{name}.toml"));
-        let mut campaign = Campaign::load(&path).unwrap();
-        campaign.episodes = 11;
+        let campaign = Campaign::load(&path).unwrap().with_episodes(11).unwrap();
         let gains = gains(&campaign).loops();
         let digits = |precision, simd, episodes| {
             let cpu = Cpu::new(&campaign, &gains, precision, simd);
-            let flown = cpu.fly(episodes, &|_| ()).into_iter();
-            flown.map(|flown| format!("{flown:?}")).collect::<Vec<_>>()
+            let simulated = cpu.simulate(episodes, &|_| ()).into_iter();
+            simulated
+                .map(|simulated| format!("{simulated:?}"))
+                .collect::<Vec<_>>()
         };
         // Both vector widths fuse every multiply-add.
         let widths = [Simd::Avx2, Simd::Avx512].into_iter();

@@ -21,8 +21,8 @@ fn coupled(coordinates: &str, moved_m: f64) -> Vec<Vec<Vec<ChannelSample>>> {
 }
 
 /// Holds the force on x of each agent against a formula of its x and the other's.
-fn holds(flown: &[Vec<Vec<ChannelSample>>], force_n: impl Fn(f64, f64) -> f64) {
-    for agents in flown {
+fn holds(simulated: &[Vec<Vec<ChannelSample>>], force_n: impl Fn(f64, f64) -> f64) {
+    for agents in simulated {
         for (own, other) in [(0, 1), (1, 0)] {
             let shown = &agents[own][X];
             let found = MASS_KG * shown.f1 + DRAG_N_S_M * shown.e_rate;

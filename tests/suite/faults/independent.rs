@@ -229,9 +229,9 @@ fn difference(more: &str, between: Between) -> f64 {
     let campaign = campaign(more);
     let gains = gains(&campaign).loops()[0][0];
     let states = simulate(&gains, between);
-    let flown = flight(&campaign);
-    assert_eq!(states.len(), flown.len());
-    let both = flown.iter().zip(&states);
+    let simulated = flight(&campaign);
+    assert_eq!(states.len(), simulated.len());
+    let both = simulated.iter().zip(&states);
     both.map(|(agents, state)| (agents[0][X].e - state[1]).abs())
         .fold(0.0, f64::max)
 }

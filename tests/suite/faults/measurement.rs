@@ -13,11 +13,11 @@ fn sensor(kind: &str, more: &str) -> String {
 /// Holds f2 against its definition at each step, given x' of all steps; before the onset there is none.
 #[track_caller]
 fn holds(fault: &str, expected: impl Fn(usize, &[f64]) -> f64) {
-    let flown = of_x(fault);
-    let rates = flown.iter().enumerate();
+    let simulated = of_x(fault);
+    let rates = simulated.iter().enumerate();
     let rates: Vec<f64> = rates.map(|(step, shown)| velocity(shown, step)).collect();
     let mut there = 0;
-    for (step, shown) in flown.iter().enumerate() {
+    for (step, shown) in simulated.iter().enumerate() {
         let expected = if step < ONSET {
             0.0
         } else {
@@ -100,9 +100,9 @@ fn val_a_replayed_measurement_is_that_of_the_window() {
 
 #[test]
 fn val_a_sensor_that_drops_out_shows_the_last_measurement_in_its_share_of_the_slots() {
-    let flown = of_x(&sensor("dropout", "burst_s = 0.004\nshare = 0.4"));
-    let (mut seen, mut dropped) = (velocity(&flown[ONSET - 1], ONSET - 1), 0);
-    for (step, shown) in flown.iter().enumerate().skip(ONSET) {
+    let simulated = of_x(&sensor("dropout", "burst_s = 0.004\nshare = 0.4"));
+    let (mut seen, mut dropped) = (velocity(&simulated[ONSET - 1], ONSET - 1), 0);
+    for (step, shown) in simulated.iter().enumerate().skip(ONSET) {
         let rate = velocity(shown, step);
         if (shown.f2 - (seen - rate)).abs() < 1e-9 && shown.f2 != 0.0 {
             dropped += 1;
@@ -121,9 +121,9 @@ fn val_a_sensor_that_drops_out_shows_the_last_measurement_in_its_share_of_the_sl
 #[test]
 fn val_outliers_are_as_frequent_as_they_say_and_of_both_signs() {
     let fault = sensor("outlier", "amplitude = 0.1\nshare = 0.2").replace("[1]", "\"all\"");
-    let flown = flight(&campaign(&fault));
+    let simulated = flight(&campaign(&fault));
     let mut count = [0, 0];
-    for agents in &flown[ONSET..] {
+    for agents in &simulated[ONSET..] {
         for shown in agents.iter().flatten() {
             match shown.f2 {
                 0.1 => count[0] += 1,
@@ -144,9 +144,9 @@ fn val_outliers_are_as_frequent_as_they_say_and_of_both_signs() {
 #[test]
 fn val_a_blocked_link_freezes_the_measurements_of_all_channels() {
     let attack = "[[fault]]\ntarget = \"network\"\nlink = \"measurement\"\nkind = \"denial-of-service\"\nonset_s = 0.3\nburst_s = 0.01\nshare = 0.5\n";
-    let flown = flight(&campaign(attack));
+    let simulated = flight(&campaign(attack));
     let mut blocked = 0;
-    for agents in &flown[ONSET..] {
+    for agents in &simulated[ONSET..] {
         for channels in agents {
             assert_eq!(channels[X].f2 == 0.0, channels[1].f2 == 0.0);
             blocked += usize::from(channels[X].f2 != 0.0);

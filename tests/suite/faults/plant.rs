@@ -38,8 +38,8 @@ fn f1_of_angle(
 
 #[test]
 fn val_a_mass_grows_along_its_ramp() {
-    let flown = plant("mass", "magnitude = 0.5\nramp_s = 0.2");
-    for (step, agents) in flown.iter().enumerate() {
+    let simulated = plant("mass", "magnitude = 0.5\nramp_s = 0.2");
+    for (step, agents) in simulated.iter().enumerate() {
         let risen = if step < ONSET {
             0.0
         } else {
@@ -58,13 +58,13 @@ fn val_a_mass_grows_along_its_ramp() {
             "f1 of yaw",
         );
     }
-    assert!(flown[400][0][2].f1.abs() > 1.0, "z has to carry it");
+    assert!(simulated[400][0][2].f1.abs() > 1.0, "z has to carry it");
 }
 
 #[test]
 fn val_an_inertia_grows_and_a_mass_does_not() {
-    let flown = plant("inertia", "magnitude = -0.3");
-    for (step, agents) in flown.iter().enumerate() {
+    let simulated = plant("inertia", "magnitude = -0.3");
+    for (step, agents) in simulated.iter().enumerate() {
         let scale = if step < ONSET { 1.0 } else { 0.7 };
         near(
             agents[0][X].f1,
@@ -75,7 +75,7 @@ fn val_an_inertia_grows_and_a_mass_does_not() {
         near(yaw.f1, f1_of_angle(yaw, 2.2 * scale, 2.2, 0.0), "f1 of yaw");
     }
     assert!(
-        flown[160..]
+        simulated[160..]
             .iter()
             .any(|agents| agents[0][5].f1.abs() > 1e-6)
     );
@@ -91,9 +91,9 @@ fn gyroscopic(agents: &[Vec<ChannelSample>], axis: usize) -> f64 {
 
 #[test]
 fn val_a_shifted_centre_of_mass_tilts() {
-    let flown = plant("center-of-mass", "offset_x_m = 0.05\noffset_y_m = -0.02");
+    let simulated = plant("center-of-mass", "offset_x_m = 0.05\noffset_y_m = -0.02");
     let weight_n = MASS_KG * GRAVITY_M_S2;
-    for (step, agents) in flown.iter().enumerate() {
+    for (step, agents) in simulated.iter().enumerate() {
         let there = if step < ONSET { 0.0 } else { 1.0 };
         let torques = [0.02 * weight_n * there, 0.05 * weight_n * there, 0.0];
         for axis in 0..3 {
@@ -111,11 +111,11 @@ fn val_a_shifted_centre_of_mass_tilts() {
 
 #[test]
 fn val_a_payload_weighs_resists_and_tilts() {
-    let flown = plant(
+    let simulated = plant(
         "payload",
         "mass_kg = 0.4\noffset_x_m = 0.3\noffset_y_m = 0.1\nduration_s = 0.4",
     );
-    for (step, agents) in flown.iter().enumerate() {
+    for (step, agents) in simulated.iter().enumerate() {
         let there = if (ONSET..ONSET + 200).contains(&step) {
             1.0
         } else {

@@ -71,9 +71,9 @@ fn found_n(shown: &ChannelSample) -> f64 {
 
 #[test]
 fn val_the_force_of_jets_is_that_of_the_formula_at_every_step() {
-    let flown = flight(&team(&of_all()));
+    let simulated = flight(&team(&of_all()));
     let (mut most, mut none, mut other) = (0.0_f64, 0, 0.0_f64);
-    for agents in &flown {
+    for agents in &simulated {
         for own in 0..3 {
             let found = found_n(&agents[own][Z]);
             let expected = force_n(agents, own, 2);
@@ -101,8 +101,8 @@ fn val_at_its_length_and_radius_a_jet_has_the_force_that_is_named() {
             "[[reference.agents]]\namplitude = 0.0\ncenter = [0.0, 0.0, 5.0, 0.0, 0.0, 0.0]\n[[reference.agents]]\namplitude = 0.0\ncenter = [0.0, {beside_m:?}, {:?}, 0.0, 0.0, 0.0]\n[[disturbance]]\nkind = \"rotor-vortex\"\nforce_n = 7.0\nradius_m = 0.8\nlength_m = 1.5\n",
             5.0 - below_m
         );
-        let flown = flight(&parsed(&more, &["initial.error=0.0"]).unwrap());
-        [0, 1].map(|agent: usize| found_n(&flown[0][agent][Z]))
+        let simulated = flight(&parsed(&more, &["initial.error=0.0"]).unwrap());
+        [0, 1].map(|agent: usize| found_n(&simulated[0][agent][Z]))
     };
     for (beside_m, below_m, expected) in [
         (0.0, 1.5, -7.0),
@@ -150,37 +150,43 @@ fn val_under_thrust_jets_add_the_same_force() {
 fn axes_in_one_group_give_the_same_bits_as_each_on_its_own() {
     // The mixture of all faults, with jets of no force and without jets.
     let path = repository("tests/suite/gpu/uav_faults.toml");
-    let mut together = Campaign::load(&path).unwrap();
-    together.episodes = 5;
+    let blowing = Campaign::load(&path).unwrap().with_episodes(5).unwrap();
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
-    let gains = gains(&together).loops();
-    let flown = |campaign: &Campaign, precision, simd| {
-        let flown = Cpu::new(campaign, &gains, precision, simd).fly(0..5, &|_| ());
+    let gains = gains(&blowing).loops();
+    let simulated = |campaign: &Campaign, precision, simd| {
+        let simulated = Cpu::new(campaign, &gains, precision, simd).simulate(0..5, &|_| ());
         format!(
             "{:?}",
-            flown.iter().map(|one| &one.outcomes).collect::<Vec<_>>()
+            simulated
+                .iter()
+                .map(|one| &one.outcomes)
+                .collect::<Vec<_>>()
         )
     };
-    let mut apart = together.clone();
     // What was drawn for the others stays: the jets are the last of the disturbances.
-    apart.disturbances.retain(|one| !is_jet(one.kind));
-    assert!(together.disturbances[..apart.disturbances.len()] == apart.disturbances[..]);
-    let blowing = together.clone();
-    for one in &mut together.disturbances {
-        if is_jet(one.kind) {
-            let none = urts_mc::campaign::Distribution::Constant(0.0);
-            one.parameters[0].distributions.fill(none);
+    let apart = blowing.clone();
+    let apart = apart.with(|own| own.disturbances.retain(|one| !is_jet(one.kind)));
+    assert!(blowing.disturbances[..apart.disturbances.len()] == apart.disturbances[..]);
+    let together = blowing.clone().with(|own| {
+        for one in &mut own.disturbances {
+            if is_jet(one.kind) {
+                let none = urts_mc::campaign::Distribution::Constant(0.0);
+                one.parameters[0].distributions.fill(none);
+            }
         }
-    }
+    });
     let all = Simd::ALL.into_iter().filter(|simd| simd.is_available());
     let widths = all.map(|simd| (Precision::F32, Some(simd)));
     for (precision, simd) in widths.chain([(Precision::F64, None)]) {
-        let own = flown(&together, precision, simd);
+        let own = simulated(&together, precision, simd);
         assert!(
-            own == flown(&apart, precision, simd),
+            own == simulated(&apart, precision, simd),
             "{precision:?} {simd:?}"
         );
-        assert!(own != flown(&blowing, precision, simd), "jets do something");
+        assert!(
+            own != simulated(&blowing, precision, simd),
+            "jets do something"
+        );
     }
 }
 
@@ -196,8 +202,8 @@ fn who_diverged_blows_at_nobody() {
         let gains = gains(&campaign);
         for precision in [Precision::F64, Precision::F32] {
             let cpu = Cpu::new(&campaign, &gains.loops(), precision, None);
-            for (index, flown) in (0..).zip(cpu.fly(0..4, &|_| ())) {
-                let agents = &flown.outcomes[0];
+            for (index, simulated) in (0..).zip(cpu.simulate(0..4, &|_| ())) {
+                let agents = &simulated.outcomes[0];
                 assert!(agents[1].failed_step.is_some() == beyond, "{error}");
                 let own = agents[0].channels[Z].rmse;
                 assert!(
@@ -263,7 +269,7 @@ fn jets_are_refused_where_they_mean_nothing() {
     let alone = parsed(&whole, &["agent.team=1"]);
     let error = alone.unwrap_err().to_string();
     assert!(
-        error.contains("nobody's jet") && error.contains("raise agent.team"),
+        error.contains("no other UAV whose rotors") && error.contains("raise agent.team"),
         "{error}"
     );
     let path = repository("campaigns/biped-paper.toml");

@@ -11,8 +11,8 @@ fn force_n(shown: &ChannelSample) -> f64 {
 #[test]
 fn val_a_gust_is_one_turn_of_a_cosine() {
     let gust = "[[disturbance]]\nkind = \"gust-1-cosine\"\nspeed_m_s = [6.0, -3.0, 0.0, 0.0, 0.0, 0.0]\ngain_n_s_m = 1.5\nonset_s = 0.3\nduration_s = 0.4\n";
-    let (flown, still) = (flight(&campaign(gust)), flight(&campaign("")));
-    for (step, agents) in flown.iter().enumerate() {
+    let (simulated, still) = (flight(&campaign(gust)), flight(&campaign("")));
+    for (step, agents) in simulated.iter().enumerate() {
         for (channel, peak_n) in [(0, 9.0), (1, -4.5), (2, 0.0)] {
             let since_s = time_s(step) - 0.3;
             let blows = (150..350).contains(&step);
@@ -33,12 +33,12 @@ fn val_a_gust_is_one_turn_of_a_cosine() {
 fn turbulence() -> Vec<Vec<Vec<f64>>> {
     let more = "[[disturbance]]\nkind = \"dryden\"\nintensity = \"moderate\"\naltitude_m = 6.0\nairspeed_m_s = 20.0\ngain_n_s_m = 1.5\n";
     let long = ["time.duration_s=60.0", "time.step_s=0.005", "agent.team=8"];
-    let flown = flight(&parsed(more, &long).unwrap());
+    let simulated = flight(&parsed(more, &long).unwrap());
     let agents = 0..8;
     agents
         .map(|agent| {
             let of_axis = |axis: usize| {
-                flown
+                simulated
                     .iter()
                     .map(|agents| force_n(&agents[agent][axis]))
                     .collect()
@@ -66,10 +66,14 @@ fn specified(axis: usize) -> (f64, f64) {
 
 #[test]
 fn val_turbulence_has_the_variance_of_the_standard() {
-    let flown = turbulence();
+    let simulated = turbulence();
     for axis in 0..3 {
         let (sigma_m_s, passes_s) = specified(axis);
-        let all = || flown.iter().flat_map(|agent| agent[axis].iter().copied());
+        let all = || {
+            simulated
+                .iter()
+                .flat_map(|agent| agent[axis].iter().copied())
+        };
         let count = all().count() as f64;
         let variance = all().map(|force| force * force).sum::<f64>() / count;
         let expected = (1.5 * sigma_m_s).powi(2);
@@ -85,7 +89,7 @@ fn val_turbulence_has_the_variance_of_the_standard() {
 
 #[test]
 fn val_turbulence_has_the_spectrum_of_the_standard() {
-    let flown = turbulence();
+    let simulated = turbulence();
     for axis in 0..3 {
         let (sigma_m_s, passes_s) = specified(axis);
         // Periodograms of pieces of 10.24 s, averaged over 40 pieces and the frequencies of a band.
@@ -103,7 +107,7 @@ fn val_turbulence_has_the_spectrum_of_the_standard() {
                     (1.0 + 3.0 * x2) / (1.0 + x2).powi(2)
                 };
                 expected += (1.5 * sigma_m_s).powi(2) * passes_s * shape;
-                for agent in &flown {
+                for agent in &simulated {
                     for samples in agent[axis].chunks_exact(piece) {
                         found += periodogram(samples, k, step_s);
                         count += 1.0 / band.len() as f64;

@@ -69,7 +69,7 @@ pub(super) const TWIN: Against = Against {
 pub(super) struct Expected {
     campaign: Campaign,
     against: &'static Against,
-    flown: Vec<EpisodeResult>,
+    simulated: Vec<EpisodeResult>,
     /// The same campaign with every threshold on |e| lower and higher by the tolerance.
     strict: Cpu,
     lenient: Cpu,
@@ -139,30 +139,31 @@ fn require(condition: bool, message: impl FnOnce() -> String) -> Result<(), Stri
 impl Expected {
     pub(super) fn new(campaign: &Campaign, gains: &Gains, against: &'static Against) -> Self {
         let cpu = |shift: f64| {
-            let mut shifted = campaign.clone();
-            let verdict = &mut shifted.verdict;
-            let limits = verdict.max_error.iter_mut();
-            for limit in limits.chain(&mut verdict.settled_error) {
-                *limit += shift;
-            }
+            let shifted = campaign.clone().with(|own| {
+                let verdict = &mut own.verdict;
+                let limits = verdict.max_error.iter_mut();
+                for limit in limits.chain(&mut verdict.settled_error) {
+                    *limit += shift;
+                }
+            });
             Cpu::new(&shifted, gains, against.precision, Some(Simd::Scalar))
         };
         Self {
             campaign: campaign.clone(),
             against,
-            flown: cpu(0.0).fly(0..campaign.episodes, &|_| ()),
+            simulated: cpu(0.0).simulate(0..campaign.episodes, &|_| ()),
             strict: cpu(-against.error),
             lenient: cpu(against.error),
         }
     }
 
     /// Compares every episode, controller, agent and channel; the error is the first difference.
-    pub(super) fn compare(&self, flown: &[EpisodeResult]) -> Result<Summary, String> {
+    pub(super) fn compare(&self, simulated: &[EpisodeResult]) -> Result<Summary, String> {
         let mut summary = Summary::default();
-        require(flown.len() == self.flown.len(), || {
-            format!("{} episodes", flown.len())
+        require(simulated.len() == self.simulated.len(), || {
+            format!("{} episodes", simulated.len())
         })?;
-        for (own, expected) in flown.iter().zip(&self.flown) {
+        for (own, expected) in simulated.iter().zip(&self.simulated) {
             let episode = own.episode.index;
             require(own.episode == expected.episode, || {
                 format!("episode {episode} has another draw")
@@ -302,8 +303,8 @@ impl Bracket<'_> {
     /// With strict thresholds, and with lenient ones.
     fn flights(&self) -> [AgentOutcome; 2] {
         [&self.expected.strict, &self.expected.lenient].map(|cpu| {
-            let flown = cpu.fly(self.episode..self.episode + 1, &|_| ());
-            flown[0].outcomes[self.controller][self.agent].clone()
+            let simulated = cpu.simulate(self.episode..self.episode + 1, &|_| ());
+            simulated[0].outcomes[self.controller][self.agent].clone()
         })
     }
 

@@ -7,7 +7,7 @@ use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::simulation::cross_check::cross_check;
-use urts_mc::simulation::{Backend, RunOptions, fly};
+use urts_mc::simulation::{Backend, RunOptions, simulate};
 
 /// One controller.
 const FTC: &str = "controllers=[\"ftc\"]";
@@ -93,8 +93,8 @@ fn val_a_team_of_42_bipeds_agrees_though_its_references_take_turns_on_the_device
     );
     assert!(campaign.time.steps > 831);
     let gains = gains(&campaign).loops();
-    let flown = super::fly(&gpu, &campaign, &gains, LONGEST);
-    let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&flown);
+    let simulated = super::simulate(&gpu, &campaign, &gains, LONGEST);
+    let agreed = Expected::new(&campaign, &gains, &TWIN).compare(&simulated);
     let summary = agreed.unwrap();
     println!("{summary}");
     assert!(summary.compared == 1);
@@ -116,9 +116,9 @@ fn a_run_of_bipeds_passes_its_cross_check() {
         tuning: Tuning::default(),
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = fly(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
-    let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-    let check = cross_check(&campaign, gains, &options, leg, scores, Some(&gpu), 8).unwrap();
+    let flight = simulate(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
+    let check = cross_check(&campaign, gains, &options, segment, scores, Some(&gpu), 8).unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 2, "{check:?}");
 }

@@ -1,6 +1,8 @@
 //! The same bits, whatever the batch, the span of steps, the order and the company.
 
-use super::{ALIKE, BRIEF, Gains, fly, fly_all, gpu_campaign, linked, mixed, mixed_biped};
+use super::{
+    ALIKE, BRIEF, Gains, gpu_campaign, linked, mixed, mixed_biped, simulate, simulate_all,
+};
 use crate::common::{gains, gpu_or_skip};
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::gpu::{GpuSimulator, Tuning};
@@ -23,17 +25,23 @@ fn short(episodes: u32, controllers: &str) -> (Campaign, Gains) {
 }
 
 /// Flights in digits that no other number has, also where they left the numbers.
-pub(super) fn digits(flown: &[EpisodeResult]) -> Vec<String> {
-    flown.iter().map(|flown| format!("{flown:?}")).collect()
+pub(super) fn digits(simulated: &[EpisodeResult]) -> Vec<String> {
+    simulated
+        .iter()
+        .map(|simulated| format!("{simulated:?}"))
+        .collect()
 }
 
 #[test]
 fn neither_batches_nor_spans_of_steps_change_a_bit() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = short(70, "\"ftc\"");
-    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    let all = digits(&simulate(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 70);
-    assert!(all.iter().any(|flown| flown.contains("diverged: true")));
+    assert!(
+        all.iter()
+            .any(|simulated| simulated.contains("diverged: true"))
+    );
     // Spans that cut blocks of noise (4 steps) and flushes (256 steps), end with them, and are as long as the adapter
     // allows.
     for (batch, steps) in [
@@ -42,22 +50,21 @@ fn neither_batches_nor_spans_of_steps_change_a_bit() {
         (Some(23), Some(100)),
         (None, Some(13)),
     ] {
-        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        let again = digits(&simulate(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
     }
     // A shorter run, in single episodes or in single steps, is the beginning of the longer one.
     let (campaign, gains) = short(5, "\"ftc\"");
     for (batch, steps) in [(Some(1), Some(100)), (None, Some(1)), (Some(3), Some(7))] {
-        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        let again = digits(&simulate(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(
             again == all[..5],
             "batches of {batch:?}, spans of {steps:?}"
         );
     }
     // The comparison can fail.
-    let mut other = campaign.clone();
-    other.seed += 1;
-    let other = digits(&fly(&gpu, &other, &gains, Tuning::default()));
+    let other = campaign.clone().with_seed(campaign.seed + 1);
+    let other = digits(&simulate(&gpu, &other, &gains, Tuning::default()));
     assert!(other.iter().zip(&all).all(|(other, own)| other != own));
 }
 
@@ -66,11 +73,14 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_bipeds() {
     let Some(gpu) = gpu_or_skip() else { return };
     let campaign = mixed_biped(&["controllers=[\"pid\"]"]);
     let gains = gains(&campaign).loops();
-    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    let all = digits(&simulate(&gpu, &campaign, &gains, Tuning::default()));
     assert_eq!(all.len(), 16);
-    assert!(all.iter().any(|flown| flown.contains("diverged: true")));
+    assert!(
+        all.iter()
+            .any(|simulated| simulated.contains("diverged: true"))
+    );
     for (batch, steps) in [(Some(5), Some(100)), (None, Some(13))] {
-        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        let again = digits(&simulate(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
     }
 }
@@ -80,10 +90,10 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
     let Some(gpu) = gpu_or_skip() else { return };
     let campaign = linked(&["controllers=[\"pid\"]"]);
     let gains = gains(&campaign).loops();
-    let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+    let all = digits(&simulate(&gpu, &campaign, &gains, Tuning::default()));
     // Spans that end between the ticks of the controller, and while a link is blocked.
     for (batch, steps) in [(Some(3), Some(101)), (None, Some(7))] {
-        let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+        let again = digits(&simulate(&gpu, &campaign, &gains, Tuning { batch, steps }));
         assert!(again == all, "batches of {batch:?}, spans of {steps:?}");
     }
 }
@@ -92,12 +102,12 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
 fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = short(70, "\"ftc\", \"pid\"");
-    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
-    let all = digits(&fly_all(&mut flyer, &campaign).unwrap());
+    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let all = digits(&simulate_all(&mut simulator, &campaign).unwrap());
     // 43 steps: samples fall inside blocks of noise, and the last is shorter; more samples than one read-back holds.
     let mut trace = |episodes: &[u32], every: u32| {
         let mut shown = vec![String::new(); episodes.len()];
-        let flown = flyer
+        let simulated = simulator
             .trace(episodes, every, &mut |instant| {
                 for (k, shown) in shown.iter_mut().enumerate() {
                     let controllers = [0, 1].map(|controller| instant.agents(k, controller));
@@ -105,8 +115,8 @@ fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
                 }
             })
             .unwrap();
-        for (&episode, flown) in episodes.iter().zip(&digits(&flown)) {
-            assert_eq!(*flown, all[episode as usize]);
+        for (&episode, simulated) in episodes.iter().zip(&digits(&simulated)) {
+            assert_eq!(*simulated, all[episode as usize]);
         }
         shown
     };
@@ -143,9 +153,9 @@ fn what_faults_remember_outlives_every_span_and_batch() {
         let brief: Vec<&str> = brief.iter().map(String::as_str).collect();
         let campaign = gpu_campaign(name, &brief);
         let gains = gains(&campaign).loops();
-        let all = digits(&fly(&gpu, &campaign, &gains, Tuning::default()));
+        let all = digits(&simulate(&gpu, &campaign, &gains, Tuning::default()));
         for (batch, steps) in [(None, Some(7)), (Some(2), Some(1))] {
-            let again = digits(&fly(&gpu, &campaign, &gains, Tuning { batch, steps }));
+            let again = digits(&simulate(&gpu, &campaign, &gains, Tuning { batch, steps }));
             assert!(
                 again == all,
                 "{name}: batches of {batch:?}, spans of {steps:?}"

@@ -1,11 +1,10 @@
 //! What can go wrong with a device, and what is said of it.
 
-use super::fly;
-use crate::common::{adapter_or_skip, gains, gpu_or_skip};
-use crate::common::{altered, campaign};
+use super::simulate;
+use crate::common::{adapter_or_skip, altered, campaign, gains, gpu_or_skip};
 use std::process::Command;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning, Wanted};
-use urts_mc::campaign::Campaign;
+use urts_mc::campaign::{Campaign, Validated};
 use urts_mc::reference::Reference;
 use urts_mc::synthesis::LoopGains;
 
@@ -40,20 +39,20 @@ fn a_device_lost_in_the_middle_of_a_batch_is_an_error() {
         batch: None,
         steps: Some(100),
     };
-    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, tuning).unwrap();
-    let error = flyer.fly(0..6, &|_| gpu.destroy()).unwrap_err();
+    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, tuning).unwrap();
+    let error = simulator.simulate(0..6, &|_| gpu.destroy()).unwrap_err();
     assert_lost(&error, &gpu);
     // It stays lost.
-    assert_lost(&flyer.fly(0..6, &|_| ()).unwrap_err(), &gpu);
-    assert_lost(&flyer.trace(&[0], 10, &mut |_| ()).err().unwrap(), &gpu);
+    assert_lost(&simulator.simulate(0..6, &|_| ()).unwrap_err(), &gpu);
+    assert_lost(&simulator.trace(&[0], 10, &mut |_| ()).err().unwrap(), &gpu);
 }
 
 #[test]
 fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
-    let error = flyer.trace(&[3, 1], 10, &mut |_| gpu.destroy());
+    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let error = simulator.trace(&[3, 1], 10, &mut |_| gpu.destroy());
     assert_lost(&error.err().unwrap(), &gpu);
 }
 
@@ -61,15 +60,18 @@ fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
 fn a_device_lost_between_batches_or_before_the_first_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
-    assert_eq!(flyer.fly(0..3, &|_| ()).unwrap().len(), 3);
+    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    assert_eq!(simulator.simulate(0..3, &|_| ()).unwrap().len(), 3);
     gpu.destroy();
-    assert_lost(&flyer.fly(3..6, &|_| ()).unwrap_err(), &gpu);
+    assert_lost(&simulator.simulate(3..6, &|_| ()).unwrap_err(), &gpu);
     let error = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err();
     assert_lost(&error.unwrap(), &gpu);
     // Another device of the same adapter is not concerned.
     let other = gpu_or_skip().unwrap();
-    assert_eq!(fly(&other, &campaign, &gains, Tuning::default()).len(), 6);
+    assert_eq!(
+        simulate(&other, &campaign, &gains, Tuning::default()).len(),
+        6
+    );
 }
 
 #[test]
@@ -101,7 +103,10 @@ fn shaders_that_do_not_compile_are_an_error_in_the_compilers_words() {
         }
     }
     // The device is none the worse for it.
-    assert_eq!(fly(&gpu, &campaign, &gains, Tuning::default()).len(), 6);
+    assert_eq!(
+        simulate(&gpu, &campaign, &gains, Tuning::default()).len(),
+        6
+    );
 }
 
 /// Demands that an error is of too little memory, and says how much was wanted.
@@ -133,13 +138,16 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
         let campaign = campaign("smoke");
         let gains = gains(&campaign).loops();
         let gpu = Gpu::open(Wanted::Named(&name)).unwrap();
-        let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
         let many: Vec<u32> = (0..30_000).collect();
-        let error = flyer.trace(&many, 1, &mut |_| ()).err().unwrap();
+        let error = simulator.trace(&many, 1, &mut |_| ()).err().unwrap();
         println!("{error}");
         assert_out_of_memory(&error, &gpu);
         // What takes less still flies.
-        assert_eq!(flyer.trace(&[0, 1], 1000, &mut |_| ()).unwrap().len(), 2);
+        assert_eq!(
+            simulator.trace(&[0, 1], 1000, &mut |_| ()).unwrap().len(),
+            2
+        );
         return;
     }
     let (campaign, gains) = small();
@@ -185,8 +193,8 @@ fn an_adapter_that_does_not_exist_is_an_error_that_lists_those_that_do() {
     }
 }
 
-/// A campaign with more agents than a campaign file may have: the others are as the last.
-fn with_team(mut campaign: Campaign, team: usize) -> Campaign {
+/// Gives a campaign more agents than its file may have: the others are as the last.
+fn with_team(campaign: &mut Validated, team: usize) {
     for fault in &mut campaign.faults {
         fault.probability.resize(team, fault.probability[0]);
         fault.channels.resize(team, fault.channels[0].clone());
@@ -219,7 +227,6 @@ fn with_team(mut campaign: Campaign, team: usize) -> Campaign {
     };
     agents.resize(team, agents[agents.len() - 1].clone());
     campaign.team = team;
-    campaign
 }
 
 #[test]
@@ -227,8 +234,10 @@ fn a_team_too_large_for_a_workgroup_is_an_error_that_says_how_large() {
     let Some(gpu) = gpu_or_skip() else { return };
     // A campaign file may have 64 agents, which fit most adapters; what is refused must be said before it is flown.
     let team = 2000;
-    let mut campaign = with_team(campaign("scenario-b"), team);
-    campaign.time.steps = 1;
+    let campaign = campaign("scenario-b").with(|campaign| {
+        with_team(campaign, team);
+        campaign.time.steps = 1;
+    });
     let gains = gains(&campaign).loops();
     match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err() {
         Some(GpuError::TooLarge {

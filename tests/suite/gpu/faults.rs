@@ -2,7 +2,7 @@
 
 use super::agreement::{CONTRACT, Expected};
 use super::parity::agreement;
-use super::{LONGEST, fly, gpu_campaign, jets, linked};
+use super::{LONGEST, gpu_campaign, jets, linked, simulate};
 use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
 
@@ -34,9 +34,9 @@ fn val_all_faults_of_a_uav_agree() {
     }
     // Without jets, each axis flies on its own; they are the last of the disturbances, so what was drawn for the others
     // stays.
-    let mut apart = campaign.clone();
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
-    apart.disturbances.retain(|one| !is_jet(one.kind));
+    let apart = campaign.clone();
+    let apart = apart.with(|own| own.disturbances.retain(|one| !is_jet(one.kind)));
     for campaign in [campaign, apart] {
         let Some([double, single]) = agreement(&campaign) else {
             return;
@@ -76,8 +76,8 @@ fn val_all_faults_under_thrust_agree_with_a_sampled_controller_and_late_commands
     // The contract alone: some of these flights are shaken so much that rounding grows beyond what calm ones show.
     let Some(gpu) = gpu_or_skip() else { return };
     let gains = gains(&campaign).loops();
-    let flown = fly(&gpu, &campaign, &gains, LONGEST);
-    let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&flown);
+    let simulated = simulate(&gpu, &campaign, &gains, LONGEST);
+    let compared = Expected::new(&campaign, &gains, &CONTRACT).compare(&simulated);
     let summary = compared.unwrap_or_else(|difference| panic!("{difference}"));
     println!("{}: {summary}", campaign.name);
     assert!(summary.compared > 4);

@@ -2,7 +2,7 @@
 //! fail shows nothing.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN};
-use super::{ALIKE, BRIEF, Gains, fly_all, jets, linked, mixed, mixed_biped, mixed_thrust};
+use super::{ALIKE, BRIEF, Gains, jets, linked, mixed, mixed_biped, mixed_thrust, simulate_all};
 use crate::common::{gains, gpu_or_skip};
 use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
@@ -93,13 +93,13 @@ const FULL: [Mutation; 20] = [
     ),
     (
         "drag pushes",
-        "fma(inputs.velocity, -setting.plant.drag, command + inputs.force)",
-        "fma(inputs.velocity, setting.plant.drag, command + inputs.force)",
+        "fma(inputs.velocity, -uniforms.plant.drag, command + inputs.force)",
+        "fma(inputs.velocity, uniforms.plant.drag, command + inputs.force)",
     ),
     (
         "metrics begin a step late",
-        "step >= setting.settle_step",
-        "step > setting.settle_step",
+        "step >= uniforms.settle_step",
+        "step > uniforms.settle_step",
     ),
     (
         "a settled error is smaller",
@@ -127,8 +127,8 @@ const THRUST: [Mutation; 8] = [
     ),
     (
         "torques may be a little larger",
-        "let limit = setting.plant.max_torque;",
-        "let limit = setting.plant.max_torque * 1.001;",
+        "let limit = uniforms.plant.max_torque;",
+        "let limit = uniforms.plant.max_torque * 1.001;",
     ),
     (
         "the observer is told of torques beyond the limit",
@@ -137,8 +137,8 @@ const THRUST: [Mutation; 8] = [
     ),
     (
         "gravity pulls along y",
-        "setting.plant.gravity, own.channel == 2u);",
-        "setting.plant.gravity, own.channel == 1u);",
+        "uniforms.plant.gravity, own.channel == 2u);",
+        "uniforms.plant.gravity, own.channel == 1u);",
     ),
     (
         "thrust loses what another actuator lost",
@@ -201,8 +201,8 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "no torque is lost",
-        "let command = actuator_command(wanted);",
-        "let command = wanted + actuator.bias;",
+        "let command = actuator_command(sent);",
+        "let command = sent + actuator.bias;",
     ),
     (
         "the ground pulls where it pushes",
@@ -221,13 +221,13 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "the observer is not told of torques beyond the limit",
-        "told = inputs.feedback - plus_product(",
-        "told = inputs.feedback - 0.0 * plus_product(",
+        "applied_feedback = inputs.feedback - plus_product(",
+        "applied_feedback = inputs.feedback - 0.0 * plus_product(",
     ),
     (
         "the error accelerates as the joint does",
-        "acceleration - at.row.z, told",
-        "acceleration, told",
+        "acceleration - at.row.z, applied_feedback",
+        "acceleration, applied_feedback",
     ),
     (
         "two joints change accelerations",
@@ -358,12 +358,13 @@ impl Ground {
             batch: None,
             steps: Some(300),
         };
-        let mut flyer =
+        let mut simulator =
             GpuSimulator::rewritten(gpu, &self.campaign, gains, tuning, rewrite).unwrap();
         // A batch that is out of order is noticed before its numbers are.
-        let flown = fly_all(&mut flyer, &self.campaign).map_err(|error| error.to_string())?;
+        let simulated =
+            simulate_all(&mut simulator, &self.campaign).map_err(|error| error.to_string())?;
         let [single, double] = &self.expected;
-        Ok([single.compare(&flown)?, double.compare(&flown)?])
+        Ok([single.compare(&simulated)?, double.compare(&simulated)?])
     }
 
     /// Demands that every mutation is noticed, and that nothing is without one.

@@ -2,9 +2,8 @@
 //! the CPU, in double precision within the contract and in single precision within rounding.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN, failed, figures, saturated};
-use super::{Gains, LONGEST, fly, mixed, mixed_thrust, team_of};
-use crate::common::gpu_or_skip;
-use crate::common::{altered, gains};
+use super::{Gains, LONGEST, mixed, mixed_thrust, simulate, team_of};
+use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
@@ -14,13 +13,13 @@ use urts_mc::model::ChannelSample;
 pub(super) fn agreement(campaign: &Campaign) -> Option<[Summary; 2]> {
     let gpu = gpu_or_skip()?;
     let gains = gains(campaign).loops();
-    let flown = fly(&gpu, campaign, &gains, LONGEST);
-    for (k, one) in flown.iter().enumerate() {
-        let mut before = flown[..k].iter();
+    let simulated = simulate(&gpu, campaign, &gains, LONGEST);
+    for (k, one) in simulated.iter().enumerate() {
+        let mut before = simulated[..k].iter();
         assert!(before.all(|other| other.episode.agents != one.episode.agents));
     }
     let agreed = [&CONTRACT, &TWIN].map(|against| {
-        let compared = Expected::new(campaign, &gains, against).compare(&flown);
+        let compared = Expected::new(campaign, &gains, against).compare(&simulated);
         let summary =
             compared.unwrap_or_else(|difference| panic!("{}: {difference}", campaign.name));
         println!("{}: {summary}", campaign.name);
@@ -169,10 +168,10 @@ const QUANTITIES: [Quantity; 9] = [
 /// do in a flight of all episodes; returns how many flights were followed to the end.
 pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
     let gains: Gains = gains(campaign).loops();
-    let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
+    let mut simulator = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
     let cpu = Cpu::new(campaign, &gains, Precision::F64, None);
     let mut instants = Vec::new();
-    let traced = flyer
+    let traced = simulator
         .trace(episodes, 10, &mut |instant| {
             let of = |episode| {
                 let controllers = 0..campaign.controllers.len();
@@ -184,12 +183,12 @@ pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usiz
             instants.push((instant.step, shown));
         })
         .unwrap();
-    let flown = fly(gpu, campaign, &gains, Tuning::default());
+    let simulated = simulate(gpu, campaign, &gains, Tuning::default());
     let (mut largest, mut count) = ([0.0_f64; QUANTITIES.len()], 0);
     for (k, &episode) in episodes.iter().enumerate() {
         assert_eq!(
             format!("{:?}", traced[k]),
-            format!("{:?}", flown[episode as usize])
+            format!("{:?}", simulated[episode as usize])
         );
         for controller in 0..campaign.controllers.len() {
             let (outcomes, snapshots) = cpu.trace(episode, controller, 10);

@@ -3,13 +3,13 @@
 //! drivers bound.
 
 use super::determinism::digits;
-use super::{Gains, fly_all, gpu_campaign, jets, linked, team_of};
+use super::{Gains, gpu_campaign, jets, linked, simulate_all, team_of};
 use crate::common::{altered, gains, gpu_or_skip};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::backend::gpu::{AdapterKind, Gpu, GpuError, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;
 use urts_mc::simulation::cross_check::cross_check;
-use urts_mc::simulation::{Backend, RunOptions, fly};
+use urts_mc::simulation::{Backend, RunOptions, simulate};
 
 const PID: &str = "controllers=[\"pid\"]";
 
@@ -41,14 +41,14 @@ fn blown() -> Campaign {
 /// the way; returns the longest span and the steps of an episode.
 fn alike(gpu: &Gpu, campaign: &Campaign) -> [u32; 2] {
     let gains: Gains = gains(campaign).loops();
-    let mut flyer = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
-    let adapted = digits(&fly_all(&mut flyer, campaign).unwrap());
-    let (most, steps) = (flyer.most_steps(), campaign.time.steps);
+    let mut simulator = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
+    let adapted = digits(&simulate_all(&mut simulator, campaign).unwrap());
+    let (most, steps) = (simulator.most_steps(), campaign.time.steps);
     for span in [1, most] {
-        flyer.force_steps(span);
-        let again = digits(&fly_all(&mut flyer, campaign).unwrap());
+        simulator.force_steps(span);
+        let again = digits(&simulate_all(&mut simulator, campaign).unwrap());
         assert!(again == adapted, "{}: spans of {span}", campaign.name);
-        let traced = flyer.trace(&[0], steps, &mut |_| ()).unwrap();
+        let traced = simulator.trace(&[0], steps, &mut |_| ()).unwrap();
         assert!(
             digits(&traced) == adapted[..1],
             "{}: a trace in spans of {span}",
@@ -141,19 +141,20 @@ fn spans_beyond_the_bound_are_wrong_where_the_driver_ends_loops() {
             batch: None,
             steps: Some(steps),
         };
-        let mut flyer = GpuSimulator::new(&gpu, &campaign, &gains, asked).unwrap();
-        assert!(flyer.most_steps() < steps);
-        let right = digits(&fly_all(&mut flyer, &campaign).unwrap());
-        // 33 agents in four stages have 65,535 iterations in 496 steps, and in half as many under two kinds of jets.
-        flyer.force_steps(steps);
-        let wrong = digits(&fly_all(&mut flyer, &campaign).unwrap());
+        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, asked).unwrap();
+        assert!(simulator.most_steps() < steps);
+        let right = digits(&simulate_all(&mut simulator, &campaign).unwrap());
+        // The loops of 33 agents in four stages use up 65,535 iterations in fewer than 500 steps, and in half as many
+        // under two kinds of jets.
+        simulator.force_steps(steps);
+        let wrong = digits(&simulate_all(&mut simulator, &campaign).unwrap());
         assert!(
             wrong
                 .iter()
                 .zip(&right)
                 .all(|(wrong, right)| wrong != right)
         );
-        let traced = digits(&flyer.trace(&[0], steps, &mut |_| ()).unwrap());
+        let traced = digits(&simulator.trace(&[0], steps, &mut |_| ()).unwrap());
         assert!(traced[0] != right[0], "a trace");
     }
 }
@@ -167,9 +168,9 @@ fn a_run_of_a_team_of_33_passes_its_cross_check() {
         backend: Backend::Gpu { adapter: None },
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = fly(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
-    let (leg, scores) = (&flight.legs[0], &flight.tables.scores);
-    let check = cross_check(&campaign, gains, &options, leg, scores, Some(&gpu), 2).unwrap();
+    let flight = simulate(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
+    let check = cross_check(&campaign, gains, &options, segment, scores, Some(&gpu), 2).unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 0, "{check:?}");
 }

@@ -62,6 +62,14 @@ impl Graph {
     }
 }
 
+/// All that a file names of the crate outside of comments, as paths from the root; `modules` are those that there are,
+/// as far as children of the file matter.
+pub(super) fn uses(source: &Source, modules: &BTreeSet<Module>) -> BTreeSet<Module> {
+    let file = File::new(source, modules);
+    let exported = file.exported.iter().cloned();
+    file.named(modules).into_iter().chain(exported).collect()
+}
+
 struct File {
     module: Module,
     /// What is imported for its own use, from the root of the crate; and what is passed on.
@@ -75,7 +83,10 @@ impl File {
     fn new(source: &Source, modules: &BTreeSet<Module>) -> Self {
         let own_code = source
             .text
-            .split("#[cfg(test)]\nmod tests {")
+            .split(
+                "
+mod tests {",
+            )
             .next()
             .unwrap_or_default();
         let mut file = Self {
@@ -149,17 +160,15 @@ impl File {
     }
 }
 
-/// The paths of a `use` tree, braces written out; renamed ones under their own names.
+/// The paths of a `use` tree, braces written out; renamed ones under their own names. A glob ends in `*`, which no
+/// module defines, so it leads to the module itself.
 fn expanded(tree: &str) -> Vec<Module> {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
         let path = tree.split(" as ").next().unwrap_or_default();
         let names = path.split("::").map(|name| name.trim().to_string());
-        return vec![
-            names
-                .filter(|name| !["", "self", "*"].contains(&name.as_str()) || path == "self")
-                .collect(),
-        ];
+        let named = |name: &String| !name.is_empty() && (name != "self" || path == "self");
+        return vec![names.filter(named).collect()];
     };
     let prefix: Module = expanded(tree[..open].trim_end_matches("::")).concat();
     let inside = &tree[open + 1..tree.rfind('}').unwrap_or(tree.len())];

@@ -1,9 +1,6 @@
 // BLAS in the precision `Real`, against products formed by nalgebra in double precision.
 
-use super::super::{
-    PADDINGS, Stored, all_double, assert_close, double, in_triangle, int, only_triangle, random,
-    random_symmetric,
-};
+use super::super::{PADDINGS, Stored, all_double, assert_close, double, in_triangle, int, only_triangle, random, random_symmetric};
 use nalgebra::DMatrix;
 
 /// The cases that BLAS treats apart, and one that it does not.

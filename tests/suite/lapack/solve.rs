@@ -1,9 +1,6 @@
 // Linear systems in the precision `Real`, against nalgebra's solutions in double precision.
 
-use super::super::{
-    PADDINGS, Stored, all_double, assert_close, in_triangle, int, only_triangle, random,
-    random_definite,
-};
+use super::super::{PADDINGS, Stored, all_double, assert_close, in_triangle, int, only_triangle, random, random_definite};
 use nalgebra::DMatrix;
 
 /// Factors of matrices of up to 12 rows with entries up to 10: some hundred roundings of numbers

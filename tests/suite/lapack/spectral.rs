@@ -1,10 +1,7 @@
 // Eigenvalues and singular values in the precision `Real`, against nalgebra's in double precision
 // and against their definition.
 
-use super::super::{
-    PADDINGS, Stored, all_double, assert_close, double, int, only_triangle, random,
-    random_symmetric,
-};
+use super::super::{PADDINGS, Stored, all_double, assert_close, double, int, only_triangle, random, random_symmetric};
 use nalgebra::DMatrix;
 
 /// Matrices of up to 12 rows with entries up to 10: some hundred roundings of numbers of that size.

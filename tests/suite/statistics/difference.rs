@@ -4,11 +4,9 @@ use urts_mc::statistics::{
     Estimate, Interval, independent_difference, quantile, quantile_interval, wilson,
 };
 
-use super::{
-    holds,
-    level::{NOISE, share},
-    random::SplitMix64,
-};
+use super::holds;
+use super::level::{NOISE, share};
+use super::random::SplitMix64;
 
 fn rate(failures: u64, n: u64) -> Estimate {
     Estimate {

@@ -6,7 +6,8 @@ use urts_mc::statistics::{
     Effect, Interval, Outcome, Permutations, Ranked, effects, holm, somers_d, spearman,
 };
 
-use super::{for_each_case, number, numbers, random::SplitMix64};
+use super::random::SplitMix64;
+use super::{for_each_case, number, numbers};
 
 const PERMUTATIONS: Permutations = Permutations {
     seed: 2026,

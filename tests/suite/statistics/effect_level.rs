@@ -5,11 +5,9 @@ use urts_mc::statistics::{
     Effect, Outcome, Permutations, Ranked, effects, holm, somers_d, spearman,
 };
 
-use super::{
-    holds,
-    level::{NOISE, share},
-    random::SplitMix64,
-};
+use super::holds;
+use super::level::{NOISE, share};
+use super::random::SplitMix64;
 
 type Pair = fn(&mut SplitMix64) -> (f64, f64);
 

@@ -9,12 +9,9 @@ use urts_mc::statistics::{
     paired_difference, quantile_interval, wilson, win_rate,
 };
 
-use super::{
-    coverage::{coverage, for_all_counts, rank_coverage},
-    holds,
-    random::SplitMix64,
-    ranks,
-};
+use super::coverage::{coverage, for_all_counts, rank_coverage};
+use super::random::SplitMix64;
+use super::{holds, ranks};
 
 const EXPERIMENTS: u32 = 2000;
 /// Three standard errors of a share near 95 % or 5 %: 1.5 points.

@@ -3,7 +3,9 @@
 
 use urts_mc::statistics::{Estimate, Interval, median_bca};
 
-use super::{coverage::rank_coverage, holds, random::SplitMix64, ranks};
+use super::coverage::rank_coverage;
+use super::random::SplitMix64;
+use super::{holds, ranks};
 
 /// A bootstrap's resampled medians, as (value, weight) with weights that add up to 1.
 type Medians = Vec<(f64, f64)>;

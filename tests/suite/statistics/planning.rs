@@ -5,7 +5,8 @@ use urts_mc::statistics::{
     clopper_pearson_upper, failures_allowed, power, replicate_mean, replicate_p, runs_needed,
 };
 
-use super::{count, for_each_case, number, random::SplitMix64};
+use super::random::SplitMix64;
+use super::{count, for_each_case, number};
 
 #[test]
 fn val_runs_needed_are_those_of_the_success_run_table() {

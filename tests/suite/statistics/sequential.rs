@@ -6,7 +6,8 @@ use urts_mc::statistics::{
     sequential_proof, sequential_runs_needed, sequential_upper,
 };
 
-use super::{count, for_each_case, holds, number, random::SplitMix64};
+use super::random::SplitMix64;
+use super::{count, for_each_case, holds, number};
 
 #[test]
 fn val_the_upper_bound_matches_numerical_integration() {

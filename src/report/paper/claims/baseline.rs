@@ -2,8 +2,9 @@
 
 use super::found::{Found, SETTLED_S};
 use super::groups::{Grouped, grouped, own, quotients, rate, times, with_units, worst_of_groups};
-use crate::report::paper::flights::{Scenario, Scenarios};
-use crate::report::paper::measures::{rms, top};
+use crate::report::paper::measures::top;
+use crate::report::paper::scenarios::{Scenario, Scenarios};
+use crate::statistics::rms;
 use crate::util::format::number;
 
 /// An influence is revealed if it is so many times that under the FTC.
@@ -12,19 +13,22 @@ const REVEALED: f64 = 5.0;
 const MUCH: f64 = 2.0;
 
 /// The amplitude of a channel's tracking error at a frequency.
-fn amplitude(flights: &Scenarios, flown: Scenario, channel: usize, rad_s: f64) -> f64 {
-    let errors = flights.series(flown, channel, |shown| shown.e);
+fn amplitude(flights: &Scenarios, simulated: Scenario, channel: usize, rad_s: f64) -> f64 {
+    let errors = flights.series(simulated, channel, |shown| shown.e);
     errors.wave(rad_s, SETTLED_S).amplitude
 }
 
-fn amplitudes(flights: &Scenarios, flown: Scenario, rad_s: f64) -> Grouped {
-    worst_of_groups(flights, |channel| amplitude(flights, flown, channel, rad_s))
+fn amplitudes(flights: &Scenarios, simulated: Scenario, rad_s: f64) -> Grouped {
+    worst_of_groups(flights, |channel| {
+        amplitude(flights, simulated, channel, rad_s)
+    })
 }
 
 /// The errors at the frequency of the disturbance, without and with the FTC.
 pub(super) fn revealed(flights: &Scenarios) -> Found {
     let rad_s = flights.met.force_rad_s;
-    let [pid, ftc] = [Scenario::Pid, Scenario::Ftc].map(|flown| amplitudes(flights, flown, rad_s));
+    let [pid, ftc] =
+        [Scenario::Pid, Scenario::Ftc].map(|simulated| amplitudes(flights, simulated, rad_s));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(
@@ -144,10 +148,10 @@ pub(super) fn stable(flights: &Scenarios) -> Found {
 
 /// The RMS errors of both controllers.
 pub(super) fn worse(flights: &Scenarios) -> Found {
-    let of = |flown: Scenario| {
+    let of = |simulated: Scenario| {
         grouped(flights, |channels| {
             rms(channels.iter().flat_map(|channel| {
-                let errors = flights.series(flown, *channel, |shown| shown.e);
+                let errors = flights.series(simulated, *channel, |shown| shown.e);
                 errors.after(SETTLED_S).collect::<Vec<_>>()
             }))
         })

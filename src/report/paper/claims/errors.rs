@@ -4,8 +4,8 @@ use super::found::{Found, SETTLED_S};
 use super::groups::{own, with_units, worst, worst_of_groups};
 use super::jumps::{BACK, PEAK, STRETCH, back_s, calm, part};
 use crate::model::ChannelSample;
-use crate::report::paper::flights::{Scenario, Scenarios};
 use crate::report::paper::measures::{Series, percent, top};
+use crate::report::paper::scenarios::{Scenario, Scenarios};
 use std::ops::Range;
 
 /// Bands of settling, as shares of the initial error; the claim is judged by the narrower.

@@ -1,6 +1,6 @@
 //! A claim, and how it is judged.
 
-use crate::report::paper::flights::{Scenario, Scenarios};
+use crate::report::paper::scenarios::{Scenario, Scenarios};
 
 /// Where the paper has the errors of its UAV settled, s.
 pub(super) const SETTLED_S: f64 = 2.0;
@@ -13,7 +13,7 @@ pub struct Claim {
     pub claim: &'static str,
     /// What was measured here.
     pub measured: String,
-    /// Whether it holds; none where the flight does not decide.
+    /// Whether it holds; `None` where the episode does not decide.
     pub holds: Option<bool>,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn decide(
 ) -> Claim {
     let lost = reads
         .iter()
-        .find_map(|flown| Some((flown.name(), flights.lost_s(*flown)?)));
+        .find_map(|simulated| Some((simulated.name(), flights.lost_s(*simulated)?)));
     let (measured, holds) = match lost {
         Some((flight, lost_s)) => {
             let text =

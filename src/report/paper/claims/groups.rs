@@ -1,7 +1,7 @@
 //! Numbers of the channels, group by group, and how they are written.
 
-use crate::report::paper::flights::Scenarios;
 use crate::report::paper::measures::top;
+use crate::report::paper::scenarios::Scenarios;
 use crate::util::format::number;
 
 pub(super) fn channels(flights: &Scenarios) -> std::ops::Range<usize> {

@@ -1,8 +1,8 @@
 //! The time between two jumps of the sensor fault, and what a curve does in it.
 
 use super::found::SETTLED_S;
-use crate::report::paper::flights::Scenarios;
 use crate::report::paper::measures::{Series, top};
+use crate::report::paper::scenarios::Scenarios;
 
 /// What is read of the time between two jumps of the sensor fault, as shares of it: the peak around the jump, from
 /// before it; the calm part, clear of this jump and of the next; what a stretch between jumps is.

@@ -2,8 +2,8 @@
 
 use super::found::{Claim, SETTLED_S, decide};
 use super::{baseline, errors, signals};
-use crate::report::paper::flights::Scenario::{Ftc, OnCourse, Pid};
-use crate::report::paper::flights::Scenarios;
+use crate::report::paper::scenarios::Scenario::{Ftc, OnCourse, Pid};
+use crate::report::paper::scenarios::Scenarios;
 
 /// What counts as "at once", s: half of that, for the paper sets the robot apart from the UAV.
 const AT_ONCE_S: f64 = 0.5 * SETTLED_S;

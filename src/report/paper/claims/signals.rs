@@ -4,8 +4,9 @@ use super::found::{Found, SETTLED_S};
 use super::groups::{channels, grouped, quotients, with_units, worst, worst_of_groups};
 use super::jumps::{BACK, CALM, PEAK, back_s, calm, part};
 use crate::agent::Agent;
-use crate::report::paper::flights::{Scenario, Scenarios};
-use crate::report::paper::measures::{Series, bottom, percent, rms, top};
+use crate::report::paper::measures::{Series, bottom, percent, top};
+use crate::report::paper::scenarios::{Scenario, Scenarios};
+use crate::statistics::rms;
 use crate::util::format::number;
 
 /// An estimate may be wrong by this share of what it estimates.

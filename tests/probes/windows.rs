@@ -1,10 +1,10 @@
 //! Probes of shaders/window.wgsl, delay_line.wgsl and noise.wgsl: when faults are there, what is remembered, and what
 //! is random in every step.
 
+use super::exogenous::{episodes, next_change};
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};
 use super::numbers::Numbers;
-use super::signals::{episodes, next_change};
 use super::tracked::Tracked;
 use super::world::{Flies, World};
 use crate::backend::gpu::signals::{bursts, switches};

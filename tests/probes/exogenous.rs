@@ -2,9 +2,9 @@
 
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{nothing, sized};
-use super::memory::moment;
 use super::numbers::Numbers;
 use super::tracked::Tracked;
+use super::windows::moment;
 use super::world::{Flies, Scene, World, episode};
 use crate::backend::gpu::layout::NEVER;
 use crate::backend::gpu::signals::{switches, waves};
@@ -224,9 +224,9 @@ pub(super) fn remembered<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
     world.check(lab, body, 0, sized([3.0, 1.0, 2.0]), |scene| {
         let step = scene.step;
         scene.each(|scene, a, c| {
-            let [wanted, position, velocity] = scene.numbers(a, c);
+            let [sent, position, velocity] = scene.numbers(a, c);
             let signals = &mut scene.group.agents[a].signals;
-            signals.remember(c, step, wanted, [position, velocity]);
+            signals.remember(c, step, sent, [position, velocity]);
         });
     })
 }

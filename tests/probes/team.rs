@@ -1,9 +1,9 @@
 //! Probes of shaders/team.wgsl: agents and teams.
 
+use super::exogenous::{begin, next_change};
 use super::harness::{Compared, Expected, Lab};
 use super::loops::{answer_response, at_stage, nothing, rows, sized};
 use super::numbers::Numbers;
-use super::signals::{begin, next_change};
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::backend::gpu::layout::NEVER;
@@ -189,8 +189,8 @@ fn given<const NC: usize, const NS: usize, const NX: usize>(
     let input = |k: usize| std::array::from_fn(|c| scene.number(agent, c, k));
     Response {
         error_acceleration: input(4),
-        told: input(5),
-        wanted: input(6),
+        applied_feedback: input(5),
+        sent: input(6),
         command: input(7),
         excess: input(8),
         extra_rate: [Tracked::exact(0.0); NX],
@@ -270,9 +270,15 @@ pub(super) fn ended<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    world.check(lab, "load(); group_end_step(step);", 0, nothing, |scene| {
-        scene.group.end_step(world.seed);
-    })
+    world.check(
+        lab,
+        "load(); team_state_end_step(step);",
+        0,
+        nothing,
+        |scene| {
+            scene.group.end_step(world.seed);
+        },
+    )
 }
 
 /// When a shader holds an agent's signals next.
@@ -290,7 +296,7 @@ pub(super) fn held<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    world.check(lab, "load(); group_hold(step);", 0, nothing, |scene| {
+    world.check(lab, "load(); team_state_hold(step);", 0, nothing, |scene| {
         scene.group.hold(world.seed);
         let step = scene.step;
         scene.each(|scene, a, c| {
@@ -308,7 +314,7 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     let body = "
         load();
         own.next_change = select(NEVER, step, own.lane % 2u == 0u);
-        group_begin_step(step);";
+        team_state_begin_step(step);";
     world.check(lab, body, 0, nothing, |scene| {
         let (step, change) = (
             scene.step,
@@ -328,7 +334,7 @@ pub(super) fn stages<P: Flies<NC, NX>, const NC: usize, const NS: usize, const N
     lab: &Lab,
     world: &World<P, NC, NS, NX>,
 ) -> Compared {
-    let body = "load(); group_stage(stage, asked_reference(), step >= 500u, step);";
+    let body = "load(); team_state_stage(stage, asked_reference(), step >= 500u, step);";
     let h = crate::model::integrator::Step::new(world.step_s);
     world.check(lab, body, 0, sized([1.0, 1.0, 1.0, 3.0]), |scene| {
         let rows = team_rows(world, scene);
@@ -355,8 +361,8 @@ pub(super) fn advanced<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
     let body = "
         load();
         exogenous_inputs_begin(span.first);
-        group_hold(span.first);
-        group_advance();";
+        team_state_hold(span.first);
+        team_state_advance();";
     let stride = world.shape.table_rows();
     // The model's table begins with the run, the shaders' with a window.
     let before = (2 * world.span.first as usize) * stride;
@@ -392,8 +398,8 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
 ) -> Compared {
     let body = "
         load();
-        group_hold(span.first);
-        let shown = group_show();
+        team_state_hold(span.first);
+        let shown = team_state_show();
         for (var k = 0u; k < SHOWN; k++) { answer_number(k, shown[k]); }";
     let stride = world.shape.table_rows();
     let row = &world.table[world.span.table_first as usize * stride..][..stride];
@@ -432,7 +438,7 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
                     state[1],
                     state[2],
                     state[4],
-                    response.error_acceleration[c] - response.told[c],
+                    response.error_acceleration[c] - response.applied_feedback[c],
                     f1_hat,
                     agent.signals.sensor_fault[c] + off[c][1],
                     f2_hat,

@@ -28,9 +28,9 @@ impl Scenario {
     /// What the flight is called in a sentence.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Ftc => "the FTC's flight",
-            Self::OnCourse => "the FTC's flight without initial errors",
-            Self::Pid => "the PID's flight",
+            Self::Ftc => "the episode under the FTC",
+            Self::OnCourse => "the episode under the FTC without initial errors",
+            Self::Pid => "the episode under the PID",
         }
     }
 }
@@ -51,8 +51,9 @@ impl Scenarios {
     /// # Errors
     /// If it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
     /// and one smoothed square wave, the same on all channels.
-    pub fn fly(mut campaign: Campaign) -> Result<Self, PaperError> {
-        campaign.controllers = [FTC, PID].map(Into::into).to_vec();
+    pub fn simulate(campaign: Campaign) -> Result<Self, PaperError> {
+        let pair = [FTC, PID].map(Into::into).to_vec();
+        let campaign = campaign.with(|campaign| campaign.controllers = pair);
         let path = &campaign.path;
         let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.clone() })?;
         let gains = GainSet::synthesize_or_load(&campaign)?;
@@ -74,8 +75,8 @@ impl Scenarios {
         })
     }
 
-    fn snapshots(&self, flown: Scenario) -> &[Snapshot] {
-        match flown {
+    fn snapshots(&self, simulated: Scenario) -> &[Snapshot] {
+        match simulated {
             Scenario::Ftc => &self.ftc,
             Scenario::OnCourse => &self.on_course,
             Scenario::Pid => &self.pid,
@@ -85,7 +86,7 @@ impl Scenarios {
     /// A quantity of a channel of the first agent over time.
     pub(super) fn series(
         &self,
-        flown: Scenario,
+        simulated: Scenario,
         channel: usize,
         pick: impl Fn(&ChannelSample) -> f64,
     ) -> Series {
@@ -94,7 +95,7 @@ impl Scenarios {
             Some((self.time_s(snapshot), pick(shown)))
         };
         Series(
-            self.snapshots(flown)
+            self.snapshots(simulated)
                 .iter()
                 .filter_map(of_channel)
                 .collect(),
@@ -102,12 +103,12 @@ impl Scenarios {
     }
 
     /// When the first agent's flight was no longer finite, s.
-    pub(super) fn lost_s(&self, flown: Scenario) -> Option<f64> {
+    pub(super) fn lost_s(&self, simulated: Scenario) -> Option<f64> {
         let lost = |snapshot: &&Snapshot| {
             let mut shown = snapshot.agents.first().into_iter().flatten();
             shown.any(|shown| !is_finite(shown))
         };
-        let snapshot = self.snapshots(flown).iter().find(lost)?;
+        let snapshot = self.snapshots(simulated).iter().find(lost)?;
         Some(self.time_s(snapshot))
     }
 
@@ -152,16 +153,16 @@ fn is_finite(shown: &ChannelSample) -> bool {
 
 /// The same campaign from the reference itself.
 fn without_initial_errors(campaign: &Campaign) -> Campaign {
-    let mut campaign = campaign.clone();
-    let initial = &mut campaign.initial;
-    for drawn in [
-        &mut initial.error,
-        &mut initial.error_rate,
-        &mut initial.error_integral,
-    ] {
-        drawn.distributions.fill(Distribution::Constant(0.0));
-    }
-    campaign
+    campaign.clone().with(|campaign| {
+        let initial = &mut campaign.initial;
+        for drawn in [
+            &mut initial.error,
+            &mut initial.error_rate,
+            &mut initial.error_integral,
+        ] {
+            drawn.distributions.fill(Distribution::Constant(0.0));
+        }
+    })
 }
 
 /// What the first agent meets.

@@ -41,15 +41,6 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// Whether some faults begin inside the run rather than with it.
-    #[must_use]
-    pub fn begins_later(&self) -> bool {
-        self.onset_s
-            .distributions
-            .iter()
-            .any(|onset| onset.support().1 > 0.0)
-    }
-
     /// Whether a channel is drawn for it, in some agent.
     #[must_use]
     pub fn strikes_one(&self) -> bool {
