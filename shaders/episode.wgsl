@@ -76,18 +76,7 @@ fn identify(local: u32, workgroup: u32) {
 // Takes the state from where the last span left it.
 fn resume() {
     own.failed = stored(FAILED);
-    outside = bitcast<i32>(stored(OUTSIDE));
-    outside_before_fault = bitcast<i32>(stored(OUTSIDE_BEFORE_FAULT));
-    largest = stored_number(LARGEST);
-    largest_command = stored_number(LARGEST_COMMAND);
-    recent = Sums(
-        stored_number(RECENT),
-        stored_number(RECENT + 1u),
-        stored_number(RECENT + 2u),
-        stored_number(RECENT + 3u),
-        stored_number(RECENT + 4u),
-        stored_number(RECENT + 5u),
-    );
+    metrics_resume();
     stepped_start[0] = stored_number(CHANNEL);
     stepped_start[1] = stored_number(CHANNEL + 1u);
     stepped_start[2] = stored_number(CHANNEL + 2u);
@@ -120,16 +109,7 @@ fn resume() {
 // Leaves the state for the next span.
 fn keep() {
     store(FAILED, own.failed);
-    store(OUTSIDE, bitcast<u32>(outside));
-    store(OUTSIDE_BEFORE_FAULT, bitcast<u32>(outside_before_fault));
-    store_number(LARGEST, largest);
-    store_number(LARGEST_COMMAND, largest_command);
-    store_number(RECENT, recent.square);
-    store_number(RECENT + 1u, recent.absolute);
-    store_number(RECENT + 2u, recent.effort);
-    store_number(RECENT + 3u, recent.actuator_fault);
-    store_number(RECENT + 4u, recent.sensor_fault);
-    store_number(RECENT + 5u, recent.limited);
+    metrics_keep();
     store_number(CHANNEL, stepped_start[0]);
     store_number(CHANNEL + 1u, stepped_start[1]);
     store_number(CHANNEL + 2u, stepped_start[2]);
@@ -164,7 +144,7 @@ fn start(
     own.failed = NEVER;
     outside = -1;
     outside_before_fault = -1;
-    for (var k = 0u; k < 6u; k++) {
+    for (var k = 0u; k < N_SUMS; k++) {
         store_number(TOTALS + k, 0.0);
     }
     for (var k = 0u; k < 2u * N_TURBULENCES; k++) {
@@ -234,10 +214,11 @@ fn finish(
     output[first + WORKGROUP] = select(0u, 1u, finite);
     output[first + 2u * WORKGROUP] = bitcast<u32>(outside);
     output[first + 3u * WORKGROUP] = bitcast<u32>(outside_before_fault);
-    output[first + 4u * WORKGROUP] = bitcast<u32>(largest);
-    output[first + 5u * WORKGROUP] = bitcast<u32>(largest_command);
-    for (var k = 0u; k < 6u; k++) {
-        output[first + (6u + k) * WORKGROUP] = stored(TOTALS + k);
+    for (var k = 0u; k < N_EXTREMES; k++) {
+        output[first + (4u + k) * WORKGROUP] = stored(LARGEST + k);
     }
-    output[first + 12u * WORKGROUP] = drawn(EPISODE);
+    for (var k = 0u; k < N_SUMS; k++) {
+        output[first + (4u + N_EXTREMES + k) * WORKGROUP] = stored(TOTALS + k);
+    }
+    output[first + (4u + N_EXTREMES + N_SUMS) * WORKGROUP] = drawn(EPISODE);
 }

@@ -10,11 +10,16 @@ struct Sums {
     limited: f32,
 }
 
+// Largest sizes.
+struct Extremes {
+    error: f32,
+    command: f32,
+}
+
 // Of the steps since the last flush: short sums keep the digits of single precision. The sums of the steps before are
 // in the state buffer, where they are needed once per FLUSH_STEPS.
 var<private> recent: Sums;
-var<private> largest: f32;
-var<private> largest_command: f32;
+var<private> largest: Extremes;
 // The last step with |e| above the settled error; -1 if there is none.
 var<private> outside: i32;
 // The same, up to the agent's first fault.
@@ -31,17 +36,49 @@ struct Sample {
     sensor_fault_error: f32,
 }
 
+// Takes the metrics from where the last span left them.
+fn metrics_resume() {
+    outside = bitcast<i32>(stored(OUTSIDE));
+    outside_before_fault = bitcast<i32>(stored(OUTSIDE_BEFORE_FAULT));
+    largest = Extremes(
+        stored_number(LARGEST),
+        stored_number(LARGEST + 1u),
+    );
+    recent = Sums(
+        stored_number(RECENT),
+        stored_number(RECENT + 1u),
+        stored_number(RECENT + 2u),
+        stored_number(RECENT + 3u),
+        stored_number(RECENT + 4u),
+        stored_number(RECENT + 5u),
+    );
+}
+
+// Leaves the metrics for the next span.
+fn metrics_keep() {
+    store(OUTSIDE, bitcast<u32>(outside));
+    store(OUTSIDE_BEFORE_FAULT, bitcast<u32>(outside_before_fault));
+    store_number(LARGEST, largest.error);
+    store_number(LARGEST + 1u, largest.command);
+    store_number(RECENT, recent.square);
+    store_number(RECENT + 1u, recent.absolute);
+    store_number(RECENT + 2u, recent.effort);
+    store_number(RECENT + 3u, recent.actuator_fault);
+    store_number(RECENT + 4u, recent.sensor_fault);
+    store_number(RECENT + 5u, recent.limited);
+}
+
 // Takes in a sample at step `now`; `settled` from settle_s on.
 fn metrics_take(sample: Sample, settled: bool, settled_error: f32, now: i32) {
     let size = abs(sample.error);
     outside = select(now, outside, lane_within(size, settled_error));
-    largest_command = lane_max(largest_command, abs(sample.command));
+    largest.command = lane_max(largest.command, abs(sample.command));
     recent.effort = fma(sample.command, sample.command, recent.effort);
     if LIMITED {
         recent.limited = recent.limited + lane_select_le(abs(sample.excess), 0.0, 0.0, 1.0);
     }
     if settled {
-        largest = lane_max(largest, size);
+        largest.error = lane_max(largest.error, size);
         recent.square = fma(size, size, recent.square);
         recent.absolute = recent.absolute + size;
         let first = sample.actuator_fault_error;

@@ -3,7 +3,7 @@
 use super::distribution::Distribution;
 use super::error::CampaignError;
 use super::file::*;
-use super::parameter::{Bounds, Parameter, Parameters};
+use super::parameter::{Bounds, Parameter, SamplingScope};
 use super::quantity::RandomQuantity;
 use super::source::Source;
 use super::time::Timing;
@@ -196,6 +196,7 @@ impl Check<'_> {
             bounds,
             per: default_per,
             timing: Timing::AsDrawn,
+            resolution: None,
         };
         let (distribution, per) = self.channel_value(key, value, parameter, 0)?;
         Ok(RandomQuantity {

@@ -1,6 +1,7 @@
 //! Disturbances and faults.
 
-use super::file::{DisturbanceKind, FaultKind, FaultTarget, Link};
+use super::file::Link;
+use super::kinds::{DisturbanceKind, FaultKind, FaultTarget};
 use super::quantity::RandomQuantity;
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ pub mod distribution;
 mod disturbances_and_faults;
 pub mod error;
 pub mod file;
-mod kinds;
+pub(crate) mod kinds;
 pub mod lints;
 mod load;
 mod overlay;
@@ -20,12 +20,10 @@ mod validated;
 pub use distribution::Distribution;
 pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
-pub use file::{
-    CouplingCoordinates, DisturbanceKind, FaultKind, FaultTarget, IntegralKind, Link,
-    ObserverStart, SamplingScope,
-};
+pub use file::{CouplingCoordinates, IntegralKind, Link, ObserverStart};
+pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
 pub use overlay::{Setting, SettingError};
-pub use parameter::Parameter;
+pub use parameter::{Parameter, SamplingScope};
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
 pub use time::{Time, Timing};

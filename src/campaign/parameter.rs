@@ -1,7 +1,31 @@
-//! The parameters that a table of a campaign file may hold: their names, bounds and defaults.
+//! The parameters of disturbances, faults and initial errors: their names, bounds and defaults.
 
-use super::file::*;
 use super::time::Timing;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Who shares a draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SamplingScope {
+    /// All agents and channels of an episode.
+    Episode,
+    /// All channels of an agent.
+    Agent,
+    /// Nobody.
+    Channel,
+}
+
+impl SamplingScope {
+    /// The name in a campaign file.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Episode => "episode",
+            Self::Agent => "agent",
+            Self::Channel => "channel",
+        }
+    }
+}
 
 /// The values that a quantity may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +71,18 @@ pub struct Parameter {
     pub(super) per: SamplingScope,
     /// What steps make of its values.
     pub timing: Timing,
+    pub(super) resolution: Option<Resolution>,
+}
+
+/// What of a parameter the step or the memory of an episode has to resolve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Resolution {
+    /// The length of a period, s.
+    Period,
+    /// An angular frequency, rad/s.
+    Frequency,
+    /// How far back something reaches, s.
+    Memory,
 }
 
 impl Parameter {
@@ -62,6 +98,25 @@ impl Parameter {
     pub(super) const fn timed(self, timing: Timing) -> Self {
         Self { timing, ..self }
     }
+
+    /// The same with what has to be resolved of it.
+    pub(super) const fn resolved(self, resolution: Resolution) -> Self {
+        Self {
+            resolution: Some(resolution),
+            ..self
+        }
+    }
+
+    /// Whether it says how far back something reaches, s.
+    pub(crate) fn is_remembered(&self) -> bool {
+        self.resolution == Some(Resolution::Memory)
+    }
+
+    /// Its place among the parameters of a kind.
+    pub(crate) fn place_in(&self, parameters: &[Self]) -> Option<usize> {
+        let mut names = parameters.iter().map(|parameter| parameter.name);
+        names.position(|name| name == self.name)
+    }
 }
 
 /// A parameter of each channel that has to be given.
@@ -72,6 +127,7 @@ pub(super) const fn required(name: &'static str, bounds: Bounds) -> Parameter {
         bounds,
         per: SamplingScope::Channel,
         timing: Timing::AsDrawn,
+        resolution: None,
     }
 }
 
@@ -83,36 +139,6 @@ pub(super) const fn of_agent(name: &'static str, bounds: Bounds) -> Parameter {
         bounds,
         per: SamplingScope::Agent,
         timing: Timing::AsDrawn,
+        resolution: None,
     }
 }
-
-/// A table whose parameters are looked up by name.
-pub(super) trait Parameters {
-    /// All parameters that the table can hold.
-    const NAMES: &'static [&'static str];
-    fn parameter(&self, name: &str) -> Option<&Value>;
-}
-
-macro_rules! parameters {
-    ($table:ty: $($name:ident),*) => {
-        impl Parameters for $table {
-            const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
-            fn parameter(&self, name: &str) -> Option<&Value> {
-                match name {
-                    $(stringify!($name) => self.$name.as_ref(),)*
-                    _ => None,
-                }
-            }
-        }
-    };
-}
-parameters!(InitialFile: error, error_rate, error_integral);
-parameters!(InitialBlock: error, error_rate, error_integral);
-parameters!(DisturbanceFile: amplitude, frequency_rad_s, phase_rad, scale, speed_m_s, gain_n_s_m, onset_s, duration_s,
-    wind_m_s, altitude_m, airspeed_m_s, force_n, radius_m, length_m);
-parameters!(FaultFile: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
-    burst_s, share, mass_kg, offset_x_m, offset_y_m);
-parameters!(DisturbanceBlock: amplitude, frequency_rad_s, phase_rad, scale, speed_m_s, gain_n_s_m, onset_s, duration_s,
-    wind_m_s, altitude_m, airspeed_m_s, force_n, radius_m, length_m);
-parameters!(FaultBlock: magnitude, amplitude, frequency_rad_s, period_s, smoothing, phase_rad, std, rate, delay_s, window_s,
-    burst_s, share, mass_kg, offset_x_m, offset_y_m);

@@ -1,7 +1,7 @@
 //! A random quantity: its distributions, and who shares a draw.
 
 use super::distribution::Distribution;
-use super::file::SamplingScope;
+use super::parameter::SamplingScope;
 
 /// A random quantity of each agent and channel: who shares a draw, and each one's distribution.
 #[derive(Debug, Clone, PartialEq)]

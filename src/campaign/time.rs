@@ -1,6 +1,6 @@
 //! The time of an episode in steps.
 
-use super::file::without_dust;
+use crate::util::format::without_dust;
 
 /// Duration and step.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,8 @@
 //! A campaign as the rest of the program sees it: checked and complete.
 
 use super::disturbances_and_faults::{Disturbance, Fault};
-use super::file::{CouplingCoordinates, DisturbanceKind, IntegralKind, ObserverStart};
+use super::file::{CouplingCoordinates, IntegralKind, ObserverStart};
+use super::kinds::DisturbanceKind;
 use super::overlay::Setting;
 use super::plan::{Sampling, Stop, Strata};
 use super::quantity::RandomQuantity;

@@ -2,15 +2,61 @@
 
 use super::lanes::{Lane, Real};
 
-/// Sums over steps.
-#[derive(Clone, Copy)]
-pub(crate) struct Sums<L> {
-    pub(crate) square: L,
-    pub(crate) absolute: L,
-    pub(crate) effort: L,
-    pub(crate) actuator_fault: L,
-    pub(crate) sensor_fault: L,
-    pub(crate) limited: L,
+/// Numbers of a channel that are kept by name, and travel to and from the shaders in this order.
+macro_rules! kept {
+    ($(#[$outer:meta])* $kept:ident { $($(#[$doc:meta])* $name:ident,)* }) => {
+        $(#[$outer])*
+        #[derive(Clone, Copy)]
+        pub(crate) struct $kept<L> { $($(#[$doc])* pub(crate) $name: L,)* }
+
+        impl<L: Copy> $kept<L> {
+            /// The names, as in the shaders.
+            pub(crate) const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
+
+            /// Each number from its place.
+            pub(crate) fn from_fn(mut number: impl FnMut(usize) -> L) -> Self {
+                let mut places = 0..;
+                Self { $($name: number(places.next().unwrap_or_default()),)* }
+            }
+
+            /// The same of each number.
+            pub(crate) fn map<M>(self, of: impl Fn(L) -> M) -> $kept<M> {
+                $kept { $($name: of(self.$name),)* }
+            }
+
+            /// The numbers in order.
+            #[cfg(test)]
+            pub(crate) fn numbers(&self) -> Vec<L> {
+                vec![$(self.$name),*]
+            }
+        }
+
+        impl<L: Lane> $kept<L> {
+            fn zero() -> Self {
+                Self { $($name: L::number(0.0),)* }
+            }
+        }
+    };
+}
+
+kept! {
+    /// Sums over steps.
+    Sums {
+        square,
+        absolute,
+        effort,
+        actuator_fault,
+        sensor_fault,
+        limited,
+    }
+}
+
+kept! {
+    /// Largest sizes.
+    Extremes {
+        error,
+        command,
+    }
 }
 
 /// Metrics of one channel.
@@ -20,8 +66,7 @@ pub(crate) struct Metrics<L> {
     pub(crate) recent: Sums<L>,
     /// Of the steps before.
     pub(crate) total: Sums<L>,
-    pub(crate) largest: L,
-    pub(crate) largest_command: L,
+    pub(crate) largest: Extremes<L>,
     /// The last step with |e| above the settled error; -1 if there is none.
     pub(crate) outside: L,
     /// The same, up to the agent's first fault.
@@ -39,57 +84,77 @@ pub(crate) struct Sample<L> {
     pub(crate) sensor_fault_error: L,
 }
 
-/// The metrics of one channel of one episode. Averages and sums are over the steps from settle_s on, each step counted
-/// at its start; effort, largest command and limited share are over the whole run. The command u is that of
-/// [`super::ChannelSample`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ChannelOutcome {
-    /// Root mean square of e.
-    pub rmse: f64,
-    /// Largest |e|.
-    pub max_abs: f64,
-    /// Integral of e^2 dt.
-    pub ise: f64,
-    /// Integral of |e| dt.
-    pub iae: f64,
-    /// Integral of u^2 dt.
-    pub effort: f64,
-    /// Largest |u|.
-    pub u_max: f64,
-    /// Share of the steps at which a limit cuts the command.
-    pub saturated_fraction: f64,
-    /// Root mean square of f1hat - f1.
-    pub f1_rms_error: f64,
-    /// Root mean square of f2hat - f2.
-    pub f2_rms_error: f64,
-    /// The last step with |e| above the settled error, if any.
-    pub last_outside: Option<u32>,
-    /// The same, up to the agent's first fault.
-    pub last_outside_before_fault: Option<u32>,
+/// A metric of a channel.
+#[derive(Debug, Clone, Copy)]
+pub struct Metric {
+    /// Its column in channels.parquet.
+    pub name: &'static str,
+    /// Its value.
+    pub of: fn(&ChannelOutcome) -> f64,
 }
 
-impl<L: Lane> Sums<L> {
-    fn zero() -> Self {
-        let zero = L::number(0.0);
-        Self {
-            square: zero,
-            absolute: zero,
-            effort: zero,
-            actuator_fault: zero,
-            sensor_fault: zero,
-            limited: zero,
+macro_rules! metrics {
+    (
+        errors { $($(#[$error_doc:meta])* $error:ident,)* }
+        others { $($(#[$other_doc:meta])* $other:ident,)* }
+    ) => {
+        /// The metrics of one channel of one episode. Averages and sums are over the steps from settle_s on, each step
+        /// counted at its start; effort, largest command and limited share are over the whole run. The command u is
+        /// that of [`super::ChannelSample`].
+        #[derive(Debug, Clone, Copy, PartialEq, Default)]
+        pub struct ChannelOutcome {
+            $($(#[$error_doc])* pub $error: f64,)*
+            $($(#[$other_doc])* pub $other: f64,)*
+            /// The last step with |e| above the settled error, if any.
+            pub last_outside: Option<u32>,
+            /// The same, up to the agent's first fault.
+            pub last_outside_before_fault: Option<u32>,
         }
+
+        /// The metrics of the tracking error.
+        pub const ERROR_METRICS: &[Metric] = &[
+            $(Metric { name: stringify!($error), of: |outcome| outcome.$error }),*
+        ];
+
+        /// The metrics of the command and of the estimates.
+        pub const OTHER_METRICS: &[Metric] = &[
+            $(Metric { name: stringify!($other), of: |outcome| outcome.$other }),*
+        ];
+    };
+}
+
+metrics! {
+    errors {
+        /// Root mean square of e.
+        rmse,
+        /// Largest |e|.
+        max_abs,
+        /// Integral of e^2 dt.
+        ise,
+        /// Integral of |e| dt.
+        iae,
+    }
+    others {
+        /// Integral of u^2 dt.
+        effort,
+        /// Largest |u|.
+        u_max,
+        /// Share of the steps at which a limit cuts the command.
+        saturated_fraction,
+        /// Root mean square of f1hat - f1.
+        f1_rms_error,
+        /// Root mean square of f2hat - f2.
+        f2_rms_error,
     }
 }
 
 impl<L: Lane> Metrics<L> {
     pub(crate) fn new() -> Self {
-        let (zero, never) = (L::number(0.0), L::number(-1.0));
+        let never = L::number(-1.0);
         Self {
             recent: Sums::zero(),
             total: Sums::zero(),
-            largest: zero,
-            largest_command: zero,
+            largest: Extremes::zero(),
             outside: never,
             outside_before_fault: never,
         }
@@ -105,7 +170,7 @@ impl<L: Lane> Metrics<L> {
     ) {
         let size = sample.error.abs();
         self.outside = L::select_le(size, L::splat(settled_error), self.outside, now);
-        self.largest_command = self.largest_command.max(sample.command.abs());
+        self.largest.command = self.largest.command.max(sample.command.abs());
         let recent = &mut self.recent;
         recent.effort = sample.command.mul_add(sample.command, recent.effort);
         if LIMITED {
@@ -113,7 +178,7 @@ impl<L: Lane> Metrics<L> {
             recent.limited = recent.limited + L::select_le(sample.excess.abs(), zero, zero, one);
         }
         if SETTLED {
-            self.largest = self.largest.max(size);
+            self.largest.error = self.largest.error.max(size);
             recent.square = size.mul_add(size, recent.square);
             recent.absolute = recent.absolute + size;
             let (first, second) = (sample.actuator_fault_error, sample.sensor_fault_error);
@@ -155,24 +220,20 @@ impl<L: Lane> Metrics<L> {
             value.store(&mut stored);
             stored
         };
-        let total = self.total;
-        let [square, absolute, effort] = [total.square, total.absolute, total.effort].map(lanes);
-        let [first, second, limited] =
-            [total.actuator_fault, total.sensor_fault, total.limited].map(lanes);
-        let [largest, largest_command] = [self.largest, self.largest_command].map(lanes);
+        let (total, largest) = (self.total.map(lanes), self.largest.map(lanes));
         let [outside, before] = [self.outside, self.outside_before_fault].map(lanes);
         let count = f64::from(settled);
         for (lane, out) in out.iter_mut().enumerate() {
             *out = ChannelOutcome {
-                rmse: (square[lane] / count).sqrt(),
-                max_abs: largest[lane],
-                ise: square[lane] * step_s,
-                iae: absolute[lane] * step_s,
-                effort: effort[lane] * step_s,
-                u_max: largest_command[lane],
-                saturated_fraction: limited[lane] / f64::from(steps),
-                f1_rms_error: (first[lane] / count).sqrt(),
-                f2_rms_error: (second[lane] / count).sqrt(),
+                rmse: (total.square[lane] / count).sqrt(),
+                max_abs: largest.error[lane],
+                ise: total.square[lane] * step_s,
+                iae: total.absolute[lane] * step_s,
+                effort: total.effort[lane] * step_s,
+                u_max: largest.command[lane],
+                saturated_fraction: total.limited[lane] / f64::from(steps),
+                f1_rms_error: (total.actuator_fault[lane] / count).sqrt(),
+                f2_rms_error: (total.sensor_fault[lane] / count).sqrt(),
                 last_outside: step_number(outside[lane]),
                 last_outside_before_fault: step_number(before[lane]),
             };
@@ -181,33 +242,17 @@ impl<L: Lane> Metrics<L> {
 }
 
 impl Metrics<f32> {
-    /// The metrics that the shaders kept: the sums in the order of [`Sums`], with nothing recent left; steps are -1
-    /// where there is none.
+    /// The metrics that the shaders kept, with nothing recent left: the extremes, then the sums, each by its place;
+    /// steps are -1 where there is none.
     pub(crate) fn kept(
-        [
-            square,
-            absolute,
-            effort,
-            actuator_fault,
-            sensor_fault,
-            limited,
-        ]: [f32; 6],
-        [largest, largest_command]: [f32; 2],
+        number: impl Fn(usize) -> f32,
         [outside, outside_before_fault]: [f32; 2],
     ) -> Self {
-        let total = Sums {
-            square,
-            absolute,
-            effort,
-            actuator_fault,
-            sensor_fault,
-            limited,
-        };
+        let sums = Extremes::<f32>::NAMES.len();
         Self {
             recent: Sums::zero(),
-            total,
-            largest,
-            largest_command,
+            total: Sums::from_fn(|k| number(sums + k)),
+            largest: Extremes::from_fn(&number),
             outside,
             outside_before_fault,
         }
@@ -218,16 +263,8 @@ impl ChannelOutcome {
     /// Whether every sum stayed finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        [
-            self.rmse,
-            self.max_abs,
-            self.effort,
-            self.u_max,
-            self.f1_rms_error,
-            self.f2_rms_error,
-        ]
-        .iter()
-        .all(|value| value.is_finite())
+        let mut metrics = ERROR_METRICS.iter().chain(OTHER_METRICS);
+        metrics.all(|metric| (metric.of)(self).is_finite())
     }
 }
 

@@ -9,7 +9,7 @@ use crate::draw::AgentDraw;
 use crate::draw::quantities::{Condition, Quantity, Source, conditions, quantities};
 use crate::model::episode::AgentOutcome;
 use crate::model::inputs::later_onsets;
-use crate::model::metric::ChannelOutcome;
+use crate::model::metric::{ChannelOutcome, ERROR_METRICS, Metric, OTHER_METRICS};
 use std::sync::Arc;
 
 /// The tables of a run, and the numbers that its statistics read.
@@ -175,20 +175,13 @@ impl<'a> AgentVerdict<'a> {
     }
 
     fn write_channel(&self, row: &mut Row<'_>, time: Time, metrics: &ChannelOutcome) {
-        row.real(|| "rmse".into(), self.finite(metrics.rmse))
-            .real(|| "max_abs".into(), self.finite(metrics.max_abs))
-            .real(|| "ise".into(), self.finite(metrics.ise))
-            .real(|| "iae".into(), self.finite(metrics.iae))
-            .real_if("settling_s", self.settling_s(time, metrics))
-            .real_if("recovery_s", self.recovery_s(time, metrics))
-            .real(|| "effort".into(), self.finite(metrics.effort))
-            .real(|| "u_max".into(), self.finite(metrics.u_max))
-            .real(
-                || "saturated_fraction".into(),
-                self.finite(metrics.saturated_fraction),
-            )
-            .real(|| "f1_rms_error".into(), self.finite(metrics.f1_rms_error))
-            .real(|| "f2_rms_error".into(), self.finite(metrics.f2_rms_error));
+        let write = |row: &mut Row<'_>, metric: &Metric| {
+            row.real(|| metric.name.into(), self.finite((metric.of)(metrics)));
+        };
+        ERROR_METRICS.iter().for_each(|metric| write(row, metric));
+        row.real_if("settling_s", self.settling_s(time, metrics))
+            .real_if("recovery_s", self.recovery_s(time, metrics));
+        OTHER_METRICS.iter().for_each(|metric| write(row, metric));
     }
 
     /// A metric, or "does not apply" after a divergence: no average may take it in.

@@ -55,6 +55,12 @@ pub fn correlation(value: f64, interval: Option<[f64; 2]>) -> String {
     }
 }
 
+/// A computed number without the dust of binary fractions: 12 digits of it.
+#[must_use]
+pub fn without_dust(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
+}
+
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     format!("{percent:.*}", decimals_of(percent))

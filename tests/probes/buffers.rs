@@ -66,7 +66,7 @@ pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
                 scene.answer_number(a, c, number);
             }
             scene.answer(a, c, Expected::Last(metrics.outside));
-            scene.answer_number(a, c, metrics.largest);
+            scene.answer_number(a, c, metrics.largest.error);
             for number in condition.initial[c] {
                 scene.answer_number(a, c, number);
             }
@@ -112,10 +112,10 @@ pub(super) fn constants<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
 fn forget<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>) {
     let none = Tracked::exact(0.0);
     signals.actuator = Actuator::sound();
-    for ring in &mut signals.command_rings {
+    for ring in &mut signals.lists.command_rings {
         ring.past = [[[none; 1]; 2]; NC];
     }
-    for ring in &mut signals.sensor_rings {
+    for ring in &mut signals.lists.sensor_rings {
         ring.past = [[[none; 2]; 2]; NC];
     }
 }
@@ -162,7 +162,7 @@ pub(super) fn kept<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
         load();
         for (var k = 0u; k < 6u; k++) { stepped_start[k] = number(k); }
         recent.effort = number(6u);
-        largest = number(7u);
+        largest.error = number(7u);
         outside = 77;
         outside_before_fault = 66;
         last_command = number(8u);
@@ -178,7 +178,7 @@ pub(super) fn kept<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
             let agent = &mut scene.group.agents[a];
             agent.channels[c].start[..6].copy_from_slice(&inputs[..6]);
             let metrics = &mut agent.metrics[c];
-            (metrics.recent.effort, metrics.largest) = (inputs[6], inputs[7]);
+            (metrics.recent.effort, metrics.largest.error) = (inputs[6], inputs[7]);
             metrics.outside = Tracked::exact(77.0);
             metrics.outside_before_fault = Tracked::exact(66.0);
             agent.signals.last_command[c] = inputs[8];

@@ -430,15 +430,15 @@ const CONTROLS: &[Control] = &[
         "keep",
     ),
     control(
-        "episode",
+        "metric",
         "stored_number(RECENT + 3u),",
         "stored_number(RECENT + 4u),",
         "resume",
     ),
     control(
-        "episode",
-        "store_number(LARGEST, largest);",
-        "store_number(LARGEST, largest_command);",
+        "metric",
+        "store_number(LARGEST, largest.error);",
+        "store_number(LARGEST, largest.command);",
         "keep",
     ),
 ];

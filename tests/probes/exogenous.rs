@@ -7,10 +7,10 @@ use super::tracked::Tracked;
 use super::windows::moment;
 use super::world::{Flies, Scene, World, episode};
 use crate::backend::gpu::layout::NEVER;
-use crate::backend::gpu::signals::{switches, waves};
+use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::delay_line::Actuator;
 use crate::model::exogenous::evaluation::turned;
-use crate::model::exogenous::{ExogenousInputs, Oscillation};
+use crate::model::exogenous::lists::{Item, Oscillation};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::model::metric::Sample;
 
@@ -20,8 +20,8 @@ pub(super) fn next_change<const NC: usize>(
     c: usize,
     step: u32,
 ) -> u32 {
-    let switches = switches(signals, c).into_iter().flatten();
-    switches
+    let windows = signals.lists.items().map(|item| item.window(c));
+    windows
         .flat_map(|switch| [switch.onset, switch.end])
         .filter(|turn| turn.value.is_finite())
         .map(|turn| turn.value as u32)
@@ -30,18 +30,11 @@ pub(super) fn next_change<const NC: usize>(
         .unwrap_or(NEVER)
 }
 
-/// All waves, as `lists::waves` lists them.
+/// All waves.
 fn waves_mut<const NC: usize>(
     signals: &mut ExogenousInputs<Tracked, NC>,
 ) -> impl Iterator<Item = &mut [Oscillation<Tracked>; NC]> {
-    let lists = [
-        &mut signals.sines,
-        &mut signals.gusts,
-        &mut signals.command_waves,
-        &mut signals.sensor_waves,
-        &mut signals.squares,
-    ];
-    lists.into_iter().flatten()
+    signals.lists.waves_mut().into_iter().flatten()
 }
 
 /// Moves the phases of an agent's signals to the start of a step, half step by half step.
@@ -82,9 +75,11 @@ pub(super) fn begun<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             scene.answer_number(a, c, signals.constant[c]);
             scene.answer_number(a, c, signals.ground[c]);
             scene.answer(a, c, Expected::Bits(u32::from(signals.ticks(step))));
-            for wave in waves(&signals) {
-                scene.answer_number(a, c, wave[c].inverse_smoothing);
-                scene.answer(a, c, Expected::Bits(wave[c].advance));
+            for item in signals.lists.items() {
+                if let Item::Oscillation(wave) = item {
+                    scene.answer_number(a, c, wave[c].inverse_smoothing);
+                    scene.answer(a, c, Expected::Bits(wave[c].advance));
+                }
             }
         });
     })

@@ -7,6 +7,7 @@ use crate::backend::gpu::layout::{Span, word};
 use crate::backend::gpu::pipeline::binding_layout;
 use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::{Gpu, GpuError, Wanted, adapters};
+use crate::model::metric::{Extremes, Sums};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// What every probe's text has after the joined shaders.
@@ -183,10 +184,27 @@ impl Lab {
         format!(
             "{text}\n{PRELUDE}\nconst PROBE_FIRST = {first}u;\nconst PROBE_TAKEN = {taken}u;\n\
              const PROBE_GIVEN = {}u;\nconst PROBE_IMAGE = {}u;\n\
+             fn load_metrics(first: u32) {{\n{}}}\nfn leave_metrics(first: u32) {{\n{}}}\n\
              fn probe_body(stage: u32, step: u32) {{\n{}\n}}\n",
-            job.given, job.image, job.body
+            job.given,
+            job.image,
+            each_metric(|k, name| format!("{name} = taken_number(first + {k}u);\n")),
+            each_metric(|k, name| format!("give_number(first + {k}u, {name});\n")),
+            job.body
         )
     }
+}
+
+/// A statement for each metric that is kept, in the order of the image.
+fn each_metric(statement: impl Fn(usize, String) -> String) -> String {
+    let extremes = Extremes::<f32>::NAMES
+        .iter()
+        .map(|name| format!("largest.{name}"));
+    let sums = Sums::<f32>::NAMES
+        .iter()
+        .map(|name| format!("recent.{name}"));
+    let all = extremes.chain(sums).enumerate();
+    all.map(|(k, name)| statement(k, name)).collect()
 }
 
 /// The words of all cases as the shaders keep them, `[workgroup][word][invocation]`.

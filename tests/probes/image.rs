@@ -3,16 +3,19 @@
 
 use super::harness::Expected;
 use super::tracked::Tracked;
-use crate::backend::gpu::signals::{Lists, waves};
+use crate::backend::gpu::layout::{N_EXTREMES, N_SUMS};
+use crate::backend::gpu::signals::Lists;
 use crate::model::agent::Agent;
 use crate::model::controller::FTC_STATES;
 use crate::model::exogenous::delay_line::DelayLine;
-use crate::model::metric::Sums;
+use crate::model::exogenous::lists::Item;
 
 /// Words of the image that every shape has, before its waves and rings.
-const FIXED_IMAGE: usize = 69;
+const FIXED_IMAGE: usize = 61 + N_EXTREMES + N_SUMS;
 /// Where in the image it is told when the channel failed.
-pub(super) const FAILED: usize = 51;
+pub(super) const FAILED: usize = 43;
+/// Where it is told when the error was last outside, at all and before the first fault.
+const OUTSIDE: usize = 41;
 /// States that the shaders have room for.
 const STATES: usize = FTC_STATES + 2;
 /// Where the command filter's states are.
@@ -63,8 +66,6 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
         words.push(Near(held[c]));
     }
     let metrics = &agent.metrics[c];
-    words.extend(sums(&metrics.recent).map(Near));
-    words.extend([metrics.largest, metrics.largest_command].map(Near));
     words.extend([metrics.outside, metrics.outside_before_fault].map(Last));
     words.extend([First(agent.failed), next_change]);
     for held in [
@@ -86,17 +87,22 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
         words.push(Near(held[c]));
     }
     words.extend(signals.last_measured[c].map(Near));
-    for wave in waves(signals) {
-        words.extend([Bits(wave[c].phase), Near(wave[c].held)]);
-    }
+    words.extend(metrics.largest.numbers().into_iter().map(Near));
+    words.extend(metrics.recent.numbers().into_iter().map(Near));
     let none = Tracked::exact(0.0);
-    for ring in &signals.command_rings {
-        let [[start], [end]] = ring.past[c];
-        words.extend([ring.plays[c], start, none, end, none].map(Near));
-    }
-    for ring in &signals.sensor_rings {
-        words.push(Near(ring.plays[c]));
-        words.extend(ring.past[c].as_flattened().iter().copied().map(Near));
+    for item in signals.lists.items() {
+        match item {
+            Item::Plain(_) | Item::Noise(_) | Item::Intermittent(_) => {}
+            Item::Oscillation(wave) => words.extend([Bits(wave[c].phase), Near(wave[c].held)]),
+            Item::CommandLine(line) => {
+                let [[start], [end]] = line.past[c];
+                words.extend([line.plays[c], start, none, end, none].map(Near));
+            }
+            Item::MeasurementLine(line) => {
+                words.push(Near(line.plays[c]));
+                words.extend(line.past[c].as_flattened().iter().copied().map(Near));
+            }
+        }
     }
     words
 }
@@ -110,14 +116,16 @@ pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
 ) -> Vec<(Expected, bool)> {
     use Expected::Near;
     let image = image(agent, c, Expected::Any);
+    let metrics = &agent.metrics[c];
     let signals = &agent.signals;
-    // Of the verdict and the extremes; see `Layout::named`.
-    let mut kept = vec![image[51], image[49], image[50], image[47], image[48]];
-    kept.extend(&image[41..47]);
-    let totals = sums(&agent.metrics[c].total).map(Near);
+    // The verdict, the extremes and the recent sums; see `Layout::named`.
+    let mut kept = vec![image[FAILED], image[OUTSIDE], image[OUTSIDE + 1]];
+    kept.extend(metrics.largest.numbers().into_iter().map(Near));
+    kept.extend(metrics.recent.numbers().into_iter().map(Near));
+    let totals: Vec<_> = metrics.total.numbers().into_iter().map(Near).collect();
     let channel = &image[..if NX == 0 { FTC_STATES } else { STATES }];
     let mut there: Vec<Expected> = Vec::new();
-    for noise in &signals.noises {
+    for noise in &signals.lists.noises {
         there.extend(noise.samples[c].map(Near));
     }
     for turbulence in &signals.turbulences {
@@ -135,10 +143,10 @@ pub(super) fn stored<const NC: usize, const NS: usize, const NX: usize>(
     .map(Near);
     let memory: &[Expected] = if lists.remembers { &memory } else { &[] };
     let mut samples = Vec::new();
-    for ring in &signals.command_rings {
+    for ring in &signals.lists.command_rings {
         samples.extend(ring_samples(ring, c, lists.ring_steps));
     }
-    for ring in &signals.sensor_rings {
+    for ring in &signals.lists.sensor_rings {
         samples.extend(ring_samples(ring, c, lists.ring_steps));
     }
     let between = |words: &[Expected]| words.iter().map(|&word| (word, false)).collect::<Vec<_>>();
@@ -170,15 +178,4 @@ fn ring_samples<const NC: usize, const NV: usize>(
         }
     }
     samples
-}
-
-fn sums(sums: &Sums<Tracked>) -> [Tracked; 6] {
-    [
-        sums.square,
-        sums.absolute,
-        sums.effort,
-        sums.actuator_fault,
-        sums.sensor_fault,
-        sums.limited,
-    ]
 }

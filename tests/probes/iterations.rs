@@ -43,7 +43,7 @@ const LOOPS: &[(&str, usize)] = &[
     ("exogenous_inputs_evaluate", 5),
     ("exogenous_inputs_hold", 4),
     ("exogenous_inputs_remember", 1),
-    ("finish", 2),
+    ("finish", 3),
     ("hold_command", 8),
     ("hold_sensor", 6),
     ("measure", 1),

@@ -17,6 +17,7 @@ use crate::model::controller::{FTC_STATES, OBSERVER};
 use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
+use crate::model::metric::{Extremes, Sums};
 use crate::model::plant::leg::LegUniforms;
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
 use crate::random::philox::{self, Stream};
@@ -140,6 +141,19 @@ fn val_structs_lie_in_memory_as_their_twins_do() {
                 assert_eq!(stride, size_of::<GainsUniforms>());
             }
         }
+    }
+}
+
+#[test]
+fn val_kept_metrics_have_the_names_and_the_order_of_their_twins() {
+    let module = module(&shapes::plain());
+    for (name, twins) in [
+        ("Sums", Sums::<f32>::NAMES),
+        ("Extremes", Extremes::<f32>::NAMES),
+    ] {
+        let (members, _) = layout(&module, name);
+        let members: Vec<&str> = members.iter().map(|(member, _)| member.as_str()).collect();
+        assert_eq!(members, twins, "{name}");
     }
 }
 

@@ -1,5 +1,5 @@
 // Appended to the joined shaders: where a probe's inputs come from and its results go to. PROBE_FIRST, PROBE_TAKEN,
-// PROBE_GIVEN, PROBE_IMAGE and `probe_body` are generated.
+// PROBE_GIVEN, PROBE_IMAGE, `load_metrics`, `leave_metrics` and `probe_body` are generated.
 
 var<private> probe_case: u32;
 
@@ -68,34 +68,25 @@ fn load() {
     command_gain = taken_number(38u);
     command_bias = taken_number(39u);
     held_sensor = taken_number(40u);
-    recent = Sums(
-        taken_number(41u),
-        taken_number(42u),
-        taken_number(43u),
-        taken_number(44u),
-        taken_number(45u),
-        taken_number(46u),
-    );
-    largest = taken_number(47u);
-    largest_command = taken_number(48u);
-    outside = bitcast<i32>(taken(49u));
-    outside_before_fault = bitcast<i32>(taken(50u));
-    own.failed = taken(51u);
-    own.next_change = taken(52u);
+    outside = bitcast<i32>(taken(41u));
+    outside_before_fault = bitcast<i32>(taken(42u));
+    own.failed = taken(43u);
+    own.next_change = taken(44u);
     exogenous_inputs_begin(0u);
-    held_disturbance = taken_number(53u);
-    scale = taken_number(54u);
-    frozen = taken_number(55u);
-    inverse_inertia = taken_number(56u);
-    actuator = Actuator(taken_number(57u), taken_number(58u), taken_number(59u), taken_number(60u));
-    last_command = taken_number(61u);
-    own.held_feedback = taken_number(62u);
-    slew = taken_number(63u);
-    blocked = taken_number(64u);
-    last_sent = taken_number(65u);
-    last_arrived = taken_number(66u);
-    last_measured = vec2(taken_number(67u), taken_number(68u));
-    var at = 69u;
+    held_disturbance = taken_number(45u);
+    scale = taken_number(46u);
+    frozen = taken_number(47u);
+    inverse_inertia = taken_number(48u);
+    actuator = Actuator(taken_number(49u), taken_number(50u), taken_number(51u), taken_number(52u));
+    last_command = taken_number(53u);
+    own.held_feedback = taken_number(54u);
+    slew = taken_number(55u);
+    blocked = taken_number(56u);
+    last_sent = taken_number(57u);
+    last_arrived = taken_number(58u);
+    last_measured = vec2(taken_number(59u), taken_number(60u));
+    load_metrics(61u);
+    var at = 61u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         waves[k].phase = taken(at);
         waves[k].held = taken_number(at + 1u);
@@ -127,35 +118,28 @@ fn leave() {
     give_number(38u, command_gain);
     give_number(39u, command_bias);
     give_number(40u, held_sensor);
-    give_number(41u, recent.square);
-    give_number(42u, recent.absolute);
-    give_number(43u, recent.effort);
-    give_number(44u, recent.actuator_fault);
-    give_number(45u, recent.sensor_fault);
-    give_number(46u, recent.limited);
-    give_number(47u, largest);
-    give_number(48u, largest_command);
-    give(49u, bitcast<u32>(outside));
-    give(50u, bitcast<u32>(outside_before_fault));
-    give(51u, own.failed);
-    give(52u, own.next_change);
-    give_number(53u, held_disturbance);
-    give_number(54u, scale);
-    give_number(55u, frozen);
-    give_number(56u, inverse_inertia);
-    give_number(57u, actuator.gain);
-    give_number(58u, actuator.bias);
-    give_number(59u, actuator.low);
-    give_number(60u, actuator.high);
-    give_number(61u, last_command);
-    give_number(62u, own.held_feedback);
-    give_number(63u, slew);
-    give_number(64u, blocked);
-    give_number(65u, last_sent);
-    give_number(66u, last_arrived);
-    give_number(67u, last_measured.x);
-    give_number(68u, last_measured.y);
-    var at = 69u;
+    give(41u, bitcast<u32>(outside));
+    give(42u, bitcast<u32>(outside_before_fault));
+    give(43u, own.failed);
+    give(44u, own.next_change);
+    give_number(45u, held_disturbance);
+    give_number(46u, scale);
+    give_number(47u, frozen);
+    give_number(48u, inverse_inertia);
+    give_number(49u, actuator.gain);
+    give_number(50u, actuator.bias);
+    give_number(51u, actuator.low);
+    give_number(52u, actuator.high);
+    give_number(53u, last_command);
+    give_number(54u, own.held_feedback);
+    give_number(55u, slew);
+    give_number(56u, blocked);
+    give_number(57u, last_sent);
+    give_number(58u, last_arrived);
+    give_number(59u, last_measured.x);
+    give_number(60u, last_measured.y);
+    leave_metrics(61u);
+    var at = 61u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         give(at, waves[k].phase);
         give_number(at + 1u, waves[k].held);

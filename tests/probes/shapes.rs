@@ -3,9 +3,10 @@
 use crate::agent::robot::Robot;
 use crate::agent::{ActuationKind, Uav};
 use crate::backend::gpu::shape::{PLANTS, Shape};
-use crate::backend::gpu::signals::{LISTS, Lists};
+use crate::backend::gpu::signals::Lists;
 use crate::model::agent::Coupling;
 use crate::model::episode::PlantKind;
+use crate::model::exogenous::lists::{LISTS, ListShape, SignalLists};
 use crate::model::plant::biped::LegPlant;
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
@@ -17,33 +18,32 @@ type Counts = ([usize; LISTS.len()], usize, usize);
 /// No signal.
 const NONE: Counts = ([0; LISTS.len()], 0, 0);
 /// Several of each kind, in numbers that no two lists next to each other share.
-const ALL: Counts = (
-    [
-        2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2,
-    ],
-    2,
-    2,
-);
+const ALL: Counts = (alternating(2), 2, 2);
 /// The same with fewer, which the larger plants have: their texts take long to compile.
-const EACH: Counts = (
-    [
-        1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1,
-    ],
-    1,
-    1,
-);
+const EACH: Counts = (alternating(1), 1, 1);
 /// Only what needs no look at every step: it changes when switches turn, at once.
 const QUIET: Counts = (
-    [
-        1, 2, 1, 0, 0, 2, 1, 2, 1, 0, 0, 0, 0, 0, 2, 1, 2, 1, 2, 0, 0,
-    ],
+    without(
+        alternating(1),
+        &[
+            "leaks",
+            "rate_limits",
+            "noises",
+            "intermittents",
+            "command_holds",
+            "sensor_holds",
+            "outliers",
+            "command_rings",
+            "sensor_rings",
+        ],
+    ),
     0,
     0,
 );
 /// The same among jets.
 const BLOWN: Counts = (QUIET.0, 0, 2);
 /// One noise.
-const NOISY: Counts = single(9);
+const NOISY: Counts = single(place("noises"));
 /// Samples that rings have room for; some are shorter than this.
 pub(super) const RING_STEPS: usize = 11;
 
@@ -54,30 +54,83 @@ const fn single(list: usize) -> Counts {
     (counts, 0, 0)
 }
 
+/// By turns so many items, and one more.
+const fn alternating(fewer: usize) -> [usize; LISTS.len()] {
+    let mut counts = [fewer; LISTS.len()];
+    let mut list = 1;
+    while list < counts.len() {
+        counts[list] += 1;
+        list += 2;
+    }
+    counts
+}
+
+/// The same without the items of some lists.
+const fn without(mut counts: [usize; LISTS.len()], names: &[&str]) -> [usize; LISTS.len()] {
+    let mut k = 0;
+    while k < names.len() {
+        counts[place(names[k])] = 0;
+        k += 1;
+    }
+    counts
+}
+
+/// The place of a list.
+const fn place(name: &str) -> usize {
+    let mut list = 0;
+    while !same(LISTS[list], name) {
+        list += 1;
+    }
+    list
+}
+
+const fn same(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    if one.len() != other.len() {
+        return false;
+    }
+    let mut k = 0;
+    while k < one.len() {
+        if one[k] != other[k] {
+            return false;
+        }
+        k += 1;
+    }
+    true
+}
+
+#[test]
+fn lists_of_one_shape_stand_together() {
+    let mut met: Vec<ListShape> = SignalLists::<f32, 1>::SHAPES.to_vec();
+    met.dedup();
+    let distinct = |shape: &ListShape| met.iter().filter(|other| *other == shape).count() == 1;
+    assert!(met.len() == 5 && met.iter().all(distinct), "{met:?}");
+}
+
 /// The lists of these counts, with the flags that they imply.
 fn lists((counts, turbulences, vortices): Counts) -> Lists {
-    let count = |name: &str| counts[LISTS.iter().position(|list| *list == name).unwrap()];
+    let count = |name: &str| counts[place(name)];
     let any = |names: &[&str]| names.iter().any(|name| count(name) > 0);
-    let carries = any(&["COMMAND_HOLDS", "COMMAND_RINGS"]);
-    let remembers = carries || any(&["LEAKS", "RATE_LIMITS", "SENSOR_HOLDS", "SENSOR_RINGS"]);
-    let bursts = ["INTERMITTENTS", "COMMAND_HOLDS", "SENSOR_HOLDS", "OUTLIERS"];
+    let carries = any(&["command_holds", "command_rings"]);
+    let remembers = carries || any(&["leaks", "rate_limits", "sensor_holds", "sensor_rings"]);
+    let bursts = ["intermittents", "command_holds", "sensor_holds", "outliers"];
     let bursts = bursts.map(count).iter().sum();
-    let rings = count("COMMAND_RINGS") + count("SENSOR_RINGS");
+    let rings = count("command_rings") + count("sensor_rings");
     let entries = |first: u32, count: usize| (first..).step_by(4).take(count).collect();
     let entry = |k: usize| 2 + 3 * k as u32;
     Lists {
         counts,
-        noise_entries: entries(3, count("NOISES")),
+        noise_entries: entries(3, count("noises")),
         turbulence_entries: entries(1, turbulences),
         vortices,
         bursts: (0..bursts).map(|k| (entry(k), k % 2 == 1)).collect(),
         rings: (0..rings).map(|k| k % 2 == 0).collect(),
         ring_steps: RING_STEPS,
         hold_steps: 1,
-        restless: remembers || turbulences > 0 || any(&["NOISES", "INTERMITTENTS", "OUTLIERS"]),
+        restless: remembers || turbulences > 0 || any(&["noises", "intermittents", "outliers"]),
         remembers,
         carries,
-        distorts: any(&["SCALES", "SENSOR_HOLDS", "SENSOR_RINGS"]),
+        distorts: any(&["scales", "sensor_holds", "sensor_rings"]),
     }
 }
 

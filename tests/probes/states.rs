@@ -4,17 +4,18 @@ use super::numbers::Numbers;
 use super::shapes::RING_STEPS;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::signals::{LISTS, Lists};
+use crate::backend::gpu::signals::Lists;
 use crate::draw::member;
 use crate::model::agent::Agent;
+use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::delay_line::DelayLine;
+use crate::model::exogenous::lists::Oscillation;
 use crate::model::exogenous::noise::{Filter, Noise, Turbulence};
 use crate::model::exogenous::vortex::Vortex;
 use crate::model::exogenous::window::{IntermittentWindow, Window};
-use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::inputs::ChannelInputs;
 use crate::model::lanes::{Lane, MAX_WIDTH};
-use crate::model::metric::Sums;
+use crate::model::metric::{Extremes, Sums};
 
 /// Purposes of random numbers.
 const CONDITION: u32 = 1;
@@ -35,8 +36,7 @@ struct Random<'s> {
 
 impl Random<'_> {
     fn count(&self, list: &str) -> usize {
-        let list = LISTS.iter().position(|name| *name == list);
-        self.lists.counts[list.unwrap()]
+        self.lists.count(list)
     }
 
     /// When something is there: around the scene's step, and in the world's span. A ramp's middle is never met by a
@@ -187,27 +187,27 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         let mut signals = ExogenousInputs::none();
         signals.hold_steps = lists.hold_steps;
         signals.rises = lists.restless;
-        signals.losses = random.plain("LOSSES", 0.0, 0.9);
-        signals.hard_overs = random.plain("HARD_OVERS", -2.0, 2.0);
-        signals.command_biases = random.plain("COMMAND_BIASES", -0.5, 0.5);
-        signals.leaks = random.plain("LEAKS", 0.0, 0.3);
-        signals.rate_limits = random.plain("RATE_LIMITS", 0.0, 0.5);
-        signals.scales = random.plain("SCALES", -0.3, 0.3);
-        signals.sensor_biases = random.plain("SENSOR_BIASES", -0.5, 0.5);
-        signals.inertias = random.plain("INERTIAS", 0.0, 0.5);
-        signals.weights = random.plain("WEIGHTS", -0.5, 0.5);
-        signals.noises = random.noises();
-        signals.intermittents = random.burst("INTERMITTENTS", 0.0, 0.9);
-        signals.command_holds = random.burst("COMMAND_HOLDS", 1.0, 1.0);
-        signals.sensor_holds = random.burst("SENSOR_HOLDS", 1.0, 1.0);
-        signals.outliers = random.burst("OUTLIERS", 1.0, 3.0);
-        signals.sines = random.waves("SINES");
-        signals.gusts = random.waves("GUSTS");
-        signals.command_waves = random.waves("COMMAND_WAVES");
-        signals.sensor_waves = random.waves("SENSOR_WAVES");
-        signals.squares = random.waves("SQUARES");
-        signals.command_rings = random.ring("COMMAND_RINGS");
-        signals.sensor_rings = random.ring("SENSOR_RINGS");
+        signals.lists.losses = random.plain("losses", 0.0, 0.9);
+        signals.lists.hard_overs = random.plain("hard_overs", -2.0, 2.0);
+        signals.lists.command_biases = random.plain("command_biases", -0.5, 0.5);
+        signals.lists.leaks = random.plain("leaks", 0.0, 0.3);
+        signals.lists.rate_limits = random.plain("rate_limits", 0.0, 0.5);
+        signals.lists.scales = random.plain("scales", -0.3, 0.3);
+        signals.lists.sensor_biases = random.plain("sensor_biases", -0.5, 0.5);
+        signals.lists.inertias = random.plain("inertias", 0.0, 0.5);
+        signals.lists.weights = random.plain("weights", -0.5, 0.5);
+        signals.lists.noises = random.noises();
+        signals.lists.intermittents = random.burst("intermittents", 0.0, 0.9);
+        signals.lists.command_holds = random.burst("command_holds", 1.0, 1.0);
+        signals.lists.sensor_holds = random.burst("sensor_holds", 1.0, 1.0);
+        signals.lists.outliers = random.burst("outliers", 1.0, 3.0);
+        signals.lists.sines = random.waves("sines");
+        signals.lists.gusts = random.waves("gusts");
+        signals.lists.command_waves = random.waves("command_waves");
+        signals.lists.sensor_waves = random.waves("sensor_waves");
+        signals.lists.squares = random.waves("squares");
+        signals.lists.command_rings = random.ring("command_rings");
+        signals.lists.sensor_rings = random.ring("sensor_rings");
         signals.turbulences = random.turbulences();
         let first_fault = random.switch::<L>(0.0, 0.0).onset;
         let numbers = &mut random.numbers;
@@ -253,17 +253,13 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         }
         for metrics in &mut made.metrics {
             for sums in [&mut metrics.recent, &mut metrics.total] {
-                *sums = Sums {
-                    square: some(9.0).abs(),
-                    absolute: some(9.0).abs(),
-                    effort: some(9.0).abs(),
-                    actuator_fault: some(9.0).abs(),
-                    sensor_fault: some(9.0).abs(),
-                    limited: some(200.0).abs().floor(),
-                };
+                // Counts of steps are whole.
+                *sums = Sums::from_fn(|k| match Sums::<Tracked>::NAMES[k] {
+                    "limited" => some(200.0).abs().floor(),
+                    _ => some(9.0).abs(),
+                });
             }
-            metrics.largest = some(1.0).abs();
-            metrics.largest_command = some(1.0).abs();
+            metrics.largest = Extremes::from_fn(|_| some(1.0).abs());
             metrics.outside = some(250.0).floor().max(Tracked::exact(-1.0));
             metrics.outside_before_fault = some(250.0).floor().max(Tracked::exact(-1.0));
         }
@@ -315,17 +311,11 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
         .map(|_| some(1.3).abs() + Tracked::exact(0.3));
     // As the shader is given it, it is exact.
     signals.inverse_inertia = signals.inverse_inertia.map(|one| Tracked::exact(one.value));
-    let waves = [
-        &mut signals.sines,
-        &mut signals.gusts,
-        &mut signals.command_waves,
-        &mut signals.sensor_waves,
-        &mut signals.squares,
-    ];
+    let waves = signals.lists.waves_mut();
     for wave in waves.into_iter().flatten().flatten() {
         wave.held = some(1.0);
     }
-    for noise in &mut signals.noises {
+    for noise in &mut signals.lists.noises {
         noise.samples = noise.samples.map(|samples| samples.map(|_| some(2.0)));
     }
     for turbulence in &mut signals.turbulences {
@@ -341,10 +331,12 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
         signals.actuator.high[c] = Tracked::number(high);
     }
     signals
+        .lists
         .command_rings
         .iter_mut()
         .for_each(|ring| fill(ring, numbers));
     signals
+        .lists
         .sensor_rings
         .iter_mut()
         .for_each(|ring| fill(ring, numbers));

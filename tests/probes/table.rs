@@ -413,8 +413,16 @@ pub(super) const GROUPS: &[Probe] = &[
         ["channel_plant"],
         over_shapes!(buffers::constants)
     ),
-    probe!("resume", ["resume"], over_shapes!(buffers::resumed)),
-    probe!("keep", ["keep"], over_shapes!(buffers::kept)),
+    probe!(
+        "resume",
+        ["resume", "metrics_resume"],
+        over_shapes!(buffers::resumed)
+    ),
+    probe!(
+        "keep",
+        ["keep", "metrics_keep"],
+        over_shapes!(buffers::kept)
+    ),
 ];
 
 /// All probes.

@@ -232,7 +232,12 @@ const TWINS: &[(&str, &str, Pairs)] = &[
 
 /// Functions of these Rust files without a twin, and why.
 const IN_RUST_ALONE: &[(&[&str], &str)] = &[
-    (&["new", "none", "zero", "kept", "key"], "made by the host"),
+    (
+        &[
+            "new", "none", "zero", "kept", "key", "from_fn", "map", "numbers",
+        ],
+        "made or read by the host",
+    ),
     (
         &[
             "mul_add", "abs", "sqrt", "floor", "from_f64", "to_f64", "splat",
@@ -352,7 +357,16 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
         "indexing of buffers",
     ),
     (&["leg_accelerate"], "half of respond"),
-    (&["identify", "resume", "keep"], "the state between spans"),
+    (
+        &[
+            "identify",
+            "resume",
+            "keep",
+            "metrics_resume",
+            "metrics_keep",
+        ],
+        "the state between spans",
+    ),
 ];
 
 fn flat(listed: &[(&[&'static str], &str)]) -> BTreeSet<&'static str> {

@@ -7,9 +7,9 @@ use super::loops::{nothing, sized};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
-use crate::backend::gpu::signals::{bursts, switches};
 use crate::draw::member;
 use crate::model::exogenous::delay_line::Moment;
+use crate::model::exogenous::lists::Item;
 use crate::model::exogenous::noise::normal_pair;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
@@ -36,10 +36,10 @@ pub(super) fn switched<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
         scene.each(|scene, a, c| {
             let signals = &scene.group.agents[a].signals;
             let next = next_change(signals, c, step);
-            for switch in switches(signals, c).into_iter().flatten() {
-                for number in [switch.weight(now), switch.value, switch.at(now)] {
-                    scene.answer_number(a, c, number);
-                }
+            let windows = signals.lists.items().map(|item| item.window(c));
+            let numbers = windows.map(|window| [window.weight(now), window.value, window.at(now)]);
+            for number in numbers.collect::<Vec<_>>().into_iter().flatten() {
+                scene.answer_number(a, c, number);
             }
             scene.answer(a, c, Expected::Bits(next));
         });
@@ -62,8 +62,11 @@ pub(super) fn burst<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     world.check(lab, body, 2 * count + 1, nothing, |scene| {
         let (step, episodes) = (scene.step, episodes(scene.index));
         scene.each(|scene, a, c| {
-            let all = bursts(&scene.group.agents[a].signals);
-            let all = all.map(|burst| burst.at(c, step, world.seed, &episodes));
+            let all = scene.group.agents[a].signals.lists.items();
+            let all = all.filter_map(|item| match item {
+                Item::Intermittent(item) => Some(item.at(c, step, world.seed, &episodes)),
+                _ => None,
+            });
             for number in all.collect::<Vec<_>>().into_iter().flatten() {
                 scene.answer_number(a, c, number);
             }
@@ -97,10 +100,10 @@ pub(super) fn rings_held<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         let step = scene.step;
         scene.each(|scene, a, c| {
             let signals = &mut scene.group.agents[a].signals;
-            for ring in &mut signals.command_rings {
+            for ring in &mut signals.lists.command_rings {
                 ring.hold(c, step);
             }
-            for ring in &mut signals.sensor_rings {
+            for ring in &mut signals.lists.sensor_rings {
                 ring.hold(c, step);
             }
         });
@@ -131,12 +134,12 @@ pub(super) fn rings_played<P: Flies<NC, NX>, const NC: usize, const NS: usize, c
             let [now, now_rate, past, past_rate] = scene.numbers(a, c);
             let (mut answers, none) = (Vec::new(), Tracked::exact(0.0));
             let signals = &scene.group.agents[a].signals;
-            for ring in &signals.command_rings {
+            for ring in &signals.lists.command_rings {
                 let [recalled] = ring.recall(c, moment, [now]);
                 let [either] = ring.or_past(c, [now], [past]);
                 answers.extend([recalled, none, either, none]);
             }
-            for ring in &signals.sensor_rings {
+            for ring in &signals.lists.sensor_rings {
                 answers.extend(ring.recall(c, moment, [now, now_rate]));
                 answers.extend(ring.or_past(c, [now, now_rate], [past, past_rate]));
             }
@@ -166,10 +169,10 @@ pub(super) fn rings_recorded<
         scene.each(|scene, a, c| {
             let [now, rate] = scene.numbers(a, c);
             let signals = &mut scene.group.agents[a].signals;
-            for ring in &mut signals.command_rings {
+            for ring in &mut signals.lists.command_rings {
                 ring.record(c, step, [now]);
             }
-            for ring in &mut signals.sensor_rings {
+            for ring in &mut signals.lists.sensor_rings {
                 ring.record(c, step, [now, rate]);
             }
         });
@@ -207,13 +210,13 @@ pub(super) fn rings_read<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
                 first += signals * lists.ring_steps;
                 Expected::Bits(place as u32)
             };
-            for ring in &signals.command_rings {
+            for ring in &signals.lists.command_rings {
                 let [command] = ring.read(c, step);
                 let numbers = [command, Tracked::exact(0.0)].map(Expected::Near);
                 answers.push(place(ring.length[c][0], 1));
                 answers.extend(numbers);
             }
-            for ring in &signals.sensor_rings {
+            for ring in &signals.lists.sensor_rings {
                 answers.push(place(ring.length[c][0], 2));
                 answers.extend(ring.read(c, step).map(Expected::Near));
             }
@@ -257,7 +260,7 @@ pub(super) fn noise<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
     world.check(lab, body, 0, nothing, |scene| {
         let (step, episodes) = (scene.step, episodes(scene.index));
         for agent in &mut scene.group.agents {
-            for (index, noise) in (step..).zip(&mut agent.signals.noises) {
+            for (index, noise) in (step..).zip(&mut agent.signals.lists.noises) {
                 for c in 0..NC {
                     noise.draw(c, index, world.seed, &episodes);
                 }

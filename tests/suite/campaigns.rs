@@ -298,7 +298,7 @@ fn every_kind_of_fault_and_disturbance_has_a_line_in_a_shipped_campaign() {
         .iter()
         .map(|path| Campaign::load(path).unwrap())
         .collect();
-    for kind in FaultKind::ALL {
+    for &kind in FaultKind::ALL {
         for target in [
             FaultTarget::Actuator,
             FaultTarget::Sensor,

@@ -187,7 +187,7 @@ fn the_shaders_readme_has_a_line_for_every_shader() {
 #[test]
 fn the_campaigns_readme_names_every_kind_of_fault() {
     let text = fs::read_to_string(repository("campaigns/README.md")).unwrap();
-    for kind in FaultKind::ALL {
+    for &kind in FaultKind::ALL {
         let name = format!("`{}`", kind.name());
         assert!(text.contains(&name), "{name}");
     }

@@ -8,11 +8,11 @@
 use super::GpuError;
 use super::adapter::AdapterKind;
 use super::device::Gpu;
-use super::layout::SHOWN_WORDS;
+use super::layout::{N_EXTREMES, N_SUMS, SHOWN_WORDS};
 use super::shape::Shape;
-use super::signals::{LISTS, WAVE_LISTS};
 use crate::model::agent::Coupling;
 use crate::model::controller::FTC_STATES;
+use crate::model::exogenous::lists::{LISTS, ListShape, SignalLists};
 use crate::random::philox::ROUNDS;
 
 /// Mesa's software drivers (llvmpipe) end all loops of an invocation after 65,535 iterations in all (`lp_bld_limits.h`,
@@ -76,7 +76,11 @@ impl Shape {
         let random = passes(u64::from(ROUNDS));
 
         // Signals that are evaluated: a loop of each list of waves, and one of the rings of commands.
-        let evaluate = waves + WAVE_LISTS as u64 + passes(rings);
+        let shapes = SignalLists::<f32, 1>::SHAPES.iter();
+        let wave_lists = shapes
+            .filter(|shape| **shape == ListShape::Oscillation)
+            .count();
+        let evaluate = waves + wave_lists as u64 + passes(rings);
         // What is held over a step: a loop of each list, one of turbulences, the sum of the commands that leak, and
         // when it changes next.
         let hold = if_there(lists.leaks(), passes(team))
@@ -101,7 +105,8 @@ impl Shape {
         // stage more, and `start` and `finish` have loops over words.
         let words = passes(SHOWN_WORDS as u64)
             + passes(FTC_STATES as u64)
-            + 2 * passes(6)
+            + 2 * passes(N_SUMS as u64)
+            + passes(N_EXTREMES as u64)
             + passes(2 * turbulences);
         let beside = passes(waves) + hold + step + stage + words;
         Iterations { per_step, beside }

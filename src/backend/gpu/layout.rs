@@ -1,20 +1,31 @@
 //! What travels to and from the shaders of a group of channels, as 32-bit words: the draws, the outcomes.
 
 use super::shape::Shape;
-use super::signals::{LISTS, Lists, bursts, switches, waves};
-use crate::campaign::{Campaign, FaultKind, Time};
+use super::signals::Lists;
+use crate::campaign::{Campaign, Time};
 use crate::draw::Episode;
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, PlantKind};
-use crate::model::exogenous::Oscillation;
+use crate::model::exogenous::lists::{Item, LISTS, Oscillation};
 use crate::model::inputs::{ChannelInputs, LaneBlock, Selection};
-use crate::model::metric::{ChannelOutcome, Metrics};
+use crate::model::metric::{ChannelOutcome, Extremes, Metrics, Sums};
 use crate::model::team::Ending;
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
-/// Words of an outcome: failed step, finite, last steps outside (two), largest error and command, six sums, episode.
-pub(crate) const OUTCOME_WORDS: usize = 13;
+/// Words of the metrics in an outcome: extremes, then sums.
+pub(crate) const N_EXTREMES: usize = Extremes::<f32>::NAMES.len();
+pub(crate) const N_SUMS: usize = Sums::<f32>::NAMES.len();
+/// Words of an outcome before its metrics: failed step, finite, last steps outside (two).
+const VERDICT_WORDS: usize = 4;
+/// Words of an outcome: the verdict, the metrics, and the episode.
+pub(crate) const OUTCOME_WORDS: usize = VERDICT_WORDS + N_EXTREMES + N_SUMS + 1;
+/// Words of a state in their order: the failed step, the last steps outside (two), extremes, recent sums, totals; then
+/// the channel.
+const LARGEST: usize = 3;
+const RECENT: usize = LARGEST + N_EXTREMES;
+const TOTALS: usize = RECENT + N_SUMS;
+const CHANNEL: usize = TOTALS + N_SUMS;
 /// Words of what a channel shows: the fields of [`ChannelSample`].
 pub(crate) const SHOWN_WORDS: usize = 10;
 /// A step that never comes.
@@ -57,15 +68,15 @@ impl<'l> Layout<'l> {
             + VORTEX_WORDS * self.lists.vortices
     }
 
-    /// Words of a state: five of the verdict and the extremes, recent and total sums, the channel's own, samples of
-    /// noise, states of turbulence, memory and rings.
+    /// Words of a state: the verdict and the metrics, the channel, samples of noise, states of turbulence, memory and
+    /// rings.
     pub(crate) fn stored(self) -> usize {
         self.rings_stored() + self.lists.ring_words()
     }
 
     fn memory(self) -> usize {
         let noises = self.lists.noise_entries.len();
-        17 + self.states + 4 * noises + 2 * self.lists.turbulence_entries.len()
+        CHANNEL + self.states + 4 * noises + 2 * self.lists.turbulence_entries.len()
     }
 
     fn rings_stored(self) -> usize {
@@ -110,13 +121,14 @@ impl<'l> Layout<'l> {
             ("FAILED", 0),
             ("OUTSIDE", 1),
             ("OUTSIDE_BEFORE_FAULT", 2),
-            ("LARGEST", 3),
-            ("LARGEST_COMMAND", 4),
-            ("RECENT", 5),
-            ("TOTALS", 11),
-            ("CHANNEL", 17),
-            ("SAMPLES", 17 + self.states),
-            ("TURBULENCE_STATE", 17 + self.states + 4 * noises),
+            ("LARGEST", LARGEST),
+            ("RECENT", RECENT),
+            ("TOTALS", TOTALS),
+            ("N_EXTREMES", N_EXTREMES),
+            ("N_SUMS", N_SUMS),
+            ("CHANNEL", CHANNEL),
+            ("SAMPLES", CHANNEL + self.states),
+            ("TURBULENCE_STATE", CHANNEL + self.states + 4 * noises),
             ("MEMORY", self.memory()),
             ("RINGS_STORED", self.rings_stored()),
             ("STORED_WORDS", self.stored()),
@@ -126,8 +138,9 @@ impl<'l> Layout<'l> {
         .map(|(name, value)| (name.to_string(), value))
         .to_vec();
         for (list, (name, count)) in LISTS.iter().zip(lists.counts).enumerate() {
-            named.push(((*name).to_string(), lists.first(list)));
+            let name = name.to_uppercase();
             named.push((format!("N_{name}"), count));
+            named.push((name, lists.first(list)));
         }
         named
     }
@@ -170,11 +183,13 @@ pub(crate) fn lists<const NC: usize>(
 
 /// The longest past that a campaign's channels may have to remember, in steps.
 fn ring_steps(campaign: &Campaign) -> usize {
-    let of_faults = campaign
+    let parameters = campaign
         .faults
         .iter()
-        .filter(|fault| matches!(fault.kind, FaultKind::Delay | FaultKind::Replay));
-    let lengths = of_faults.map(|fault| &fault.parameters[0]);
+        .flat_map(|fault| fault.kind.parameters().iter().zip(&fault.parameters));
+    let lengths = parameters
+        .filter(|(parameter, _)| parameter.is_remembered())
+        .map(|(_, length_s)| length_s);
     let longest_s = lengths
         .chain(&campaign.control.delay_s)
         .flat_map(|length_s| &length_s.distributions)
@@ -258,24 +273,31 @@ pub(crate) fn drawn<const NC: usize>(
         signals.constant[c].to_bits(),
         signals.ground[c].to_bits(),
     ];
-    for switch in switches(signals, c).into_iter().flatten() {
-        let (ramp, value) = (switch.inverse_ramp.to_bits(), switch.value.to_bits());
-        words.extend([step(switch.onset), step(switch.end), ramp, value]);
+    for item in signals.lists.items() {
+        let window = item.window(c);
+        let (ramp, value) = (window.inverse_ramp.to_bits(), window.value.to_bits());
+        words.extend([step(window.onset), step(window.end), ramp, value]);
     }
-    for burst in bursts(signals) {
-        words.extend([burst.slot_steps[c][0], burst.threshold[c][0]]);
+    // Lists of one shape stand together, so each of these is the words of one shape.
+    for item in signals.lists.items() {
+        match item {
+            Item::Plain(_) | Item::Noise(_) => {}
+            Item::Intermittent(item) => {
+                words.extend([item.slot_steps[c][0], item.threshold[c][0]]);
+            }
+            Item::Oscillation(waves) => {
+                let Oscillation {
+                    inverse_smoothing,
+                    phase,
+                    advance,
+                    ..
+                } = waves[c];
+                words.extend([inverse_smoothing.to_bits(), phase, advance]);
+            }
+            Item::CommandLine(line) => words.push(line.length[c][0]),
+            Item::MeasurementLine(line) => words.push(line.length[c][0]),
+        }
     }
-    for wave in waves(signals) {
-        let Oscillation {
-            inverse_smoothing,
-            phase,
-            advance,
-            ..
-        } = wave[c];
-        words.extend([inverse_smoothing.to_bits(), phase, advance]);
-    }
-    words.extend(signals.command_rings.iter().map(|ring| ring.length[c][0]));
-    words.extend(signals.sensor_rings.iter().map(|ring| ring.length[c][0]));
     for turbulence in &signals.turbulences {
         let filter = &turbulence.filter[c];
         let fixed = [filter.keep, filter.cross].into_iter();
@@ -311,10 +333,10 @@ pub(crate) fn take_outcomes<'a>(
             for channel in 0..shape.channels {
                 let place = shape.place(channel, agent, lane);
                 let word = |k: usize| words[k * workgroup + place];
-                if word(12) != episode {
+                let marked = word(OUTCOME_WORDS - 1);
+                if marked != episode {
                     return Err(format!(
-                        "the outcome of episode {} stands in the place of episode {episode}",
-                        word(12)
+                        "the outcome of episode {marked} stands in the place of episode {episode}"
                     ));
                 }
                 let (ending, metrics) = ended(campaign.time, word);
@@ -333,8 +355,7 @@ fn ended(time: Time, word: impl Fn(usize) -> u32) -> (Ending, ChannelOutcome) {
         finite: word(1) != 0,
     };
     let metrics = Metrics::kept(
-        std::array::from_fn(|k| number(6 + k)),
-        [number(4), number(5)],
+        |k| number(VERDICT_WORDS + k),
         [last_step(word(2)), last_step(word(3))],
     );
     let settled = time.steps.saturating_sub(time.settle_step);

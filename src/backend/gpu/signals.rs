@@ -1,42 +1,8 @@
 //! What a campaign's signals are, but for their numbers: what the text of a shader depends on.
 
-use crate::model::exogenous::window::{IntermittentWindow, Window};
-use crate::model::exogenous::{ExogenousInputs, Oscillation};
+use crate::model::exogenous::ExogenousInputs;
+use crate::model::exogenous::lists::{Item, LISTS, ListShape, SignalLists};
 use crate::model::lanes::Lane;
-
-/// The lists of what switches, in their order: switches are counted through, so those of bursts, of waves and of rings
-/// lie together.
-pub(crate) const LISTS: [&str; 21] = [
-    "LOSSES",
-    "HARD_OVERS",
-    "COMMAND_BIASES",
-    "LEAKS",
-    "RATE_LIMITS",
-    "SCALES",
-    "SENSOR_BIASES",
-    "INERTIAS",
-    "WEIGHTS",
-    "NOISES",
-    "INTERMITTENTS",
-    "COMMAND_HOLDS",
-    "SENSOR_HOLDS",
-    "OUTLIERS",
-    "SINES",
-    "GUSTS",
-    "COMMAND_WAVES",
-    "SENSOR_WAVES",
-    "SQUARES",
-    "COMMAND_RINGS",
-    "SENSOR_RINGS",
-];
-/// The list of leaks.
-const LEAKS: usize = 3;
-/// The first list of bursts, of waves and of rings.
-const BURSTS: usize = 10;
-const WAVES: usize = 14;
-const RINGS: usize = 19;
-/// Lists of waves, each of which has a loop of its own wherever signals are evaluated.
-pub(super) const WAVE_LISTS: usize = RINGS - WAVES;
 
 /// What a campaign's signals are, but for their numbers: the same for every agent, episode and channel of a group.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -64,75 +30,6 @@ pub(crate) struct Lists {
     pub(crate) distorts: bool,
 }
 
-/// All switches of a channel, `[list][item]`.
-pub(crate) fn switches<L: Lane, const NC: usize>(
-    signals: &ExogenousInputs<L, NC>,
-    c: usize,
-) -> [Vec<Window<L>>; LISTS.len()] {
-    let plain = |list: &[[Window<L>; NC]]| list.iter().map(|item| item[c]).collect();
-    let bursts =
-        |list: &[IntermittentWindow<L, NC>]| list.iter().map(|item| item.switch[c]).collect();
-    let waves = |list: &[[Oscillation<L>; NC]]| list.iter().map(|item| item[c].switch).collect();
-    [
-        plain(&signals.losses),
-        plain(&signals.hard_overs),
-        plain(&signals.command_biases),
-        plain(&signals.leaks),
-        plain(&signals.rate_limits),
-        plain(&signals.scales),
-        plain(&signals.sensor_biases),
-        plain(&signals.inertias),
-        plain(&signals.weights),
-        signals.noises.iter().map(|noise| noise.switch[c]).collect(),
-        bursts(&signals.intermittents),
-        bursts(&signals.command_holds),
-        bursts(&signals.sensor_holds),
-        bursts(&signals.outliers),
-        waves(&signals.sines),
-        waves(&signals.gusts),
-        waves(&signals.command_waves),
-        waves(&signals.sensor_waves),
-        waves(&signals.squares),
-        signals
-            .command_rings
-            .iter()
-            .map(|ring| ring.switch[c])
-            .collect(),
-        signals
-            .sensor_rings
-            .iter()
-            .map(|ring| ring.switch[c])
-            .collect(),
-    ]
-}
-
-/// All bursts, in the order of their switches.
-pub(crate) fn bursts<L: Lane, const NC: usize>(
-    signals: &ExogenousInputs<L, NC>,
-) -> impl Iterator<Item = &IntermittentWindow<L, NC>> {
-    let lists = [
-        &signals.intermittents,
-        &signals.command_holds,
-        &signals.sensor_holds,
-        &signals.outliers,
-    ];
-    lists.into_iter().flatten()
-}
-
-/// All waves, in the order of their switches.
-pub(crate) fn waves<L: Lane, const NC: usize>(
-    signals: &ExogenousInputs<L, NC>,
-) -> impl Iterator<Item = &[Oscillation<L>; NC]> {
-    let lists = [
-        &signals.sines,
-        &signals.gusts,
-        &signals.command_waves,
-        &signals.sensor_waves,
-        &signals.squares,
-    ];
-    lists.into_iter().flatten()
-}
-
 impl Lists {
     /// Those of signals that are listed as [`Selection::Possible`](crate::model::inputs::Selection), and of as many
     /// vortices; rings keep up to `ring_steps` samples.
@@ -141,17 +38,23 @@ impl Lists {
         vortices: usize,
         ring_steps: usize,
     ) -> Self {
-        let of_commands = signals.command_rings.iter().map(|ring| ring.records);
-        let of_sensors = signals.sensor_rings.iter().map(|ring| ring.records);
+        let (mut noise_entries, mut bursts, mut rings) = (Vec::new(), Vec::new(), Vec::new());
+        for item in signals.lists.items() {
+            match item {
+                Item::Plain(_) | Item::Oscillation(_) => {}
+                Item::Noise(noise) => noise_entries.push(noise.entry),
+                Item::Intermittent(item) => bursts.push((item.entry, item.together)),
+                Item::CommandLine(line) => rings.push(line.records),
+                Item::MeasurementLine(line) => rings.push(line.records),
+            }
+        }
         Self {
-            counts: switches(signals, 0).map(|list| list.len()),
-            noise_entries: signals.noises.iter().map(|noise| noise.entry).collect(),
+            counts: signals.lists.counts(),
+            noise_entries,
             turbulence_entries: signals.turbulences.iter().map(|of| of.entry).collect(),
             vortices,
-            bursts: bursts(signals)
-                .map(|burst| (burst.entry, burst.together))
-                .collect(),
-            rings: of_commands.chain(of_sensors).collect(),
+            bursts,
+            rings,
             ring_steps,
             hold_steps: signals.hold_steps,
             restless: signals.is_restless(),
@@ -161,9 +64,27 @@ impl Lists {
         }
     }
 
+    /// How many items the list of this name has.
+    pub(crate) fn count(&self, name: &str) -> usize {
+        let lists = LISTS.iter().zip(self.counts);
+        lists
+            .filter(|(list, _)| **list == name)
+            .map(|(_, count)| count)
+            .sum()
+    }
+
+    /// How many items the lists of this shape have.
+    pub(crate) fn of_shape(&self, shape: ListShape) -> usize {
+        let lists = SignalLists::<f32, 1>::SHAPES.iter().zip(self.counts);
+        lists
+            .filter(|(list, _)| **list == shape)
+            .map(|(_, count)| count)
+            .sum()
+    }
+
     /// Whether commands leak from agent to agent.
     pub(crate) fn leaks(&self) -> bool {
-        self.counts[LEAKS] > 0
+        self.count("leaks") > 0
     }
 
     /// The number of a list's first switch.
@@ -178,12 +99,16 @@ impl Lists {
 
     /// Bursts, waves and rings.
     pub(crate) fn groups(&self) -> [usize; 3] {
-        [BURSTS..WAVES, WAVES..RINGS, RINGS..LISTS.len()]
-            .map(|lists| self.counts[lists].iter().sum())
+        [
+            ListShape::Intermittent,
+            ListShape::Oscillation,
+            ListShape::DelayLine,
+        ]
+        .map(|shape| self.of_shape(shape))
     }
 
     /// Words that all rings have in a channel's state.
     pub(crate) fn ring_words(&self) -> usize {
-        (self.counts[RINGS] + 2 * self.counts[RINGS + 1]) * self.ring_steps
+        (self.count("command_rings") + 2 * self.count("sensor_rings")) * self.ring_steps
     }
 }

@@ -2,18 +2,19 @@
 //! [`super::Campaign`] is what the rest of the program sees.
 
 mod disturbances_and_faults;
+mod parameters;
 mod plan;
 mod value;
 
 pub use disturbances_and_faults::*;
+pub(super) use parameters::Parameters;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
-pub use value::{
-    ChannelsFile, DistributionFile, NormalFile, Numbers, SamplingScope, TruncatedNormalFile, Value,
-};
-pub(super) use value::{in_toml, without_dust};
+pub(super) use value::in_toml;
+pub use value::{ChannelsFile, DistributionFile, NormalFile, Numbers, TruncatedNormalFile, Value};
 
 use crate::agent::ActuationKind;
 use crate::util::fixed_list::List;
+use parameters::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -339,6 +340,9 @@ pub struct InitialBlock {
     /// Integral of the error at t = 0, m s or rad s.
     pub error_integral: Option<Value>,
 }
+
+parameters!(InitialFile: error, error_rate, error_integral);
+parameters!(InitialBlock: error, error_rate, error_integral);
 
 /// What an observer starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]

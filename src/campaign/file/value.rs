@@ -1,11 +1,12 @@
 //! Values that have several forms, read by hand: serde's untagged enums would hide what is wrong with a value, and its
 //! structs would take a list for a table.
 
+use crate::campaign::parameter::SamplingScope;
 use crate::util::fixed_list::List;
 use schemars::JsonSchema;
+use serde::Deserialize;
 use serde::de::value::{Error as PlainError, MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -76,18 +77,6 @@ pub struct TruncatedNormalFile {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-}
-
-/// Who shares a draw.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum SamplingScope {
-    /// All agents and channels of an episode.
-    Episode,
-    /// All channels of an agent.
-    Agent,
-    /// Nobody.
-    Channel,
 }
 
 /// The channels of a fault.
@@ -165,22 +154,6 @@ pub(crate) fn in_toml(number: f64) -> String {
         "nan".to_string()
     } else {
         format!("{number:?}")
-    }
-}
-
-/// A computed number without the dust of binary fractions: 12 digits of it.
-pub(crate) fn without_dust(number: f64) -> f64 {
-    format!("{number:.11e}").parse().unwrap_or(number)
-}
-
-impl SamplingScope {
-    /// The name in a campaign file.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Episode => "episode",
-            Self::Agent => "agent",
-            Self::Channel => "channel",
-        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! `[[disturbance]]`.
 
 use crate::agent::Agent;
-use crate::campaign::check::{Check, Written};
+use crate::campaign::check::Check;
 use crate::campaign::disturbances_and_faults::Disturbance;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::kinds::{DisturbanceKind, Needs};
 use crate::campaign::time::Time;
 use std::borrow::Cow;
-use std::f64::consts::TAU;
 
 /// A knot, m/s.
 const KNOT_M_S: f64 = 0.514_444;
@@ -28,41 +28,10 @@ impl Check<'_> {
         self.can_disturb(&format!("{table}.kind"), kind, team, agent, walks)?;
         let file = self.with_wind(&table, file)?;
         let file = file.as_ref();
-        let parameters = self.parameters(
-            &table,
-            file,
-            file.agents.as_deref(),
-            kind.parameters(),
-            team,
-        )?;
-        let key = |name: &str| format!("{table}.{name}");
-        match kind {
-            DisturbanceKind::Sine => {
-                self.resolved(
-                    &key("frequency_rad_s"),
-                    &parameters[1],
-                    |(_, high)| high,
-                    time,
-                )?;
-            }
-            DisturbanceKind::Gust1Cosine => {
-                let written = Written {
-                    base: file.onset_s.as_ref(),
-                    own: &|agent| file.agents.as_ref()?[agent].onset_s.as_ref(),
-                };
-                self.begins(&table, written, &parameters[2], time)?;
-                self.resolved(
-                    &key("duration_s"),
-                    &parameters[3],
-                    |(low, _)| TAU / low,
-                    time,
-                )?;
-            }
-            DisturbanceKind::Constant
-            | DisturbanceKind::GroundReaction
-            | DisturbanceKind::RotorVortex
-            | DisturbanceKind::Dryden => {}
-        }
+        let blocks = file.agents.as_deref();
+        let parameters = self.parameters(&table, file, blocks, kind.parameters(), team)?;
+        let drawn = (kind.parameters(), &*parameters);
+        self.shown(&table, (file, blocks), drawn, time)?;
         Ok(Disturbance { kind, parameters })
     }
 
@@ -75,39 +44,30 @@ impl Check<'_> {
         agent: &Agent,
         walks: bool,
     ) -> Result<(), CampaignError> {
-        if kind == DisturbanceKind::GroundReaction && !walks {
-            return Err(self.invalid(
-                key,
-                "\"ground-reaction\"",
+        let refused = |limit, remedy| {
+            let value = format!("{:?}", kind.name());
+            Err(self.invalid(key, value, limit, remedy))
+        };
+        let flies = matches!(agent, Agent::Uav(_));
+        match kind.needs() {
+            Needs::Walk if !walks => refused(
                 "a ground reaction needs a walking reference",
                 "set reference.kind = \"walk\", or remove it",
-            ));
-        }
-        let flies = matches!(agent, Agent::Uav(_));
-        if matches!(kind, DisturbanceKind::Gust1Cosine | DisturbanceKind::Dryden) && !flies {
-            return Err(self.invalid(
-                key,
-                format!("{:?}", kind.name()),
+            ),
+            Needs::Uav if !flies => refused(
                 "wind acts on a UAV, not on joints",
                 "use \"sine\" or \"constant\" for a biped",
-            ));
+            ),
+            Needs::OtherUavs if !flies => refused(
+                "rotors blow on UAVs, not on joints",
+                "use \"sine\" or \"constant\" for a biped",
+            ),
+            Needs::OtherUavs if team == 1 => refused(
+                "a single UAV has no other UAV whose rotors could act on it",
+                "remove it, or raise agent.team",
+            ),
+            Needs::Nothing | Needs::Walk | Needs::Uav | Needs::OtherUavs => Ok(()),
         }
-        if kind == DisturbanceKind::RotorVortex {
-            let refused = |limit, remedy| Err(self.invalid(key, "\"rotor-vortex\"", limit, remedy));
-            if !flies {
-                return refused(
-                    "rotors blow on UAVs, not on joints",
-                    "use \"sine\" or \"constant\" for a biped",
-                );
-            }
-            if team == 1 {
-                return refused(
-                    "a single UAV has no other UAV whose rotors could act on it",
-                    "remove it, or raise agent.team",
-                );
-            }
-        }
-        Ok(())
     }
 
     /// The table of a disturbance with the wind speed of its intensity.

@@ -6,10 +6,10 @@ use crate::campaign::check::{Check, Written};
 use crate::campaign::disturbances_and_faults::Fault;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::kinds::{FaultKind, FaultTarget};
 use crate::campaign::parameter::{Bounds, Parameter, of_agent};
 use crate::campaign::quantity::RandomQuantity;
 use crate::campaign::time::Time;
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// When a fault begins.
@@ -45,7 +45,8 @@ impl Check<'_> {
         let blocks = file.agents.as_deref();
         let parameters = self.parameters(&table, file, blocks, kind.parameters(), team)?;
         let presence = self.presence(&table, file, team, time)?;
-        self.fault_resolved(&table, kind, &parameters, time)?;
+        let drawn = (kind.parameters(), &*parameters);
+        self.shown(&table, (file, blocks), drawn, time)?;
         let (mut probability, mut channels) = (Vec::new(), Vec::new());
         for agent_index in 0..team {
             let own = blocks.map(|blocks| &blocks[agent_index]);
@@ -85,7 +86,8 @@ impl Check<'_> {
     ) -> Result<(), CampaignError> {
         if !kind.strikes(target) {
             let those = FaultKind::ALL
-                .into_iter()
+                .iter()
+                .copied()
                 .filter(|kind| kind.strikes(target));
             let names: Vec<&str> = those.map(FaultKind::name).collect();
             return Err(self.invalid(
@@ -130,7 +132,7 @@ impl Check<'_> {
             return Err(self.invalid(
                 key,
                 ramp_s,
-                &format!("{:?} is there or not", file.kind.name()),
+                &format!("{:?} cannot build up gradually", file.kind.name()),
                 "remove it",
             ));
         }
@@ -139,34 +141,6 @@ impl Check<'_> {
             duration_s,
             ramp_s,
         })
-    }
-
-    /// Refuses a fault that the step or the memory cannot show.
-    fn fault_resolved(
-        &self,
-        table: &str,
-        kind: FaultKind,
-        parameters: &[RandomQuantity],
-        time: Time,
-    ) -> Result<(), CampaignError> {
-        let key = |name: &str| format!("{table}.{name}");
-        match kind {
-            FaultKind::SmoothedSquare => {
-                self.resolved(&key("period_s"), &parameters[1], |(low, _)| TAU / low, time)?;
-            }
-            FaultKind::Oscillatory => {
-                self.resolved(
-                    &key("frequency_rad_s"),
-                    &parameters[1],
-                    |(_, high)| high,
-                    time,
-                )?;
-            }
-            FaultKind::Delay => self.remembered(&key("delay_s"), &parameters[0], time)?,
-            FaultKind::Replay => self.remembered(&key("window_s"), &parameters[0], time)?,
-            _ => {}
-        }
-        Ok(())
     }
 
     /// A quantity of each agent that a fault may have or not.

@@ -5,6 +5,7 @@ use crate::campaign::check::Check;
 use crate::campaign::disturbances_and_faults::FaultChannels;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
+use crate::campaign::kinds::{FaultKind, FaultTarget};
 
 /// The channel whose actuator is the thrust where there is no other force.
 const THRUST: usize = HEIGHT;

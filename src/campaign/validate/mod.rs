@@ -15,6 +15,7 @@ use super::check::Check;
 use super::disturbances_and_faults::{Disturbance, Fault};
 use super::error::CampaignError;
 use super::file::*;
+use super::parameter::SamplingScope;
 use super::parameter::{Bounds, required};
 use super::quantity::RandomQuantity;
 use super::source::Source;

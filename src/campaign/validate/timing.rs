@@ -3,8 +3,11 @@
 use crate::campaign::check::{Check, Written};
 use crate::campaign::distribution::Distribution;
 use crate::campaign::error::CampaignError;
+use crate::campaign::file::Parameters;
+use crate::campaign::parameter::{Parameter, Resolution};
 use crate::campaign::quantity::RandomQuantity;
-use crate::campaign::time::Time;
+use crate::campaign::time::{Time, Timing};
+use std::f64::consts::TAU;
 
 /// The key that says when something begins.
 pub(super) const ONSET_KEY: &str = "onset_s";
@@ -16,6 +19,37 @@ const MAX_STEP_RAD: f64 = 0.5;
 const MAX_REMEMBERED: f64 = 1024.0;
 
 impl Check<'_> {
+    /// Refuses parameters of a disturbance or fault that the step, the end or the memory of an episode cannot show.
+    pub(super) fn shown<T: Parameters, B: Parameters>(
+        &self,
+        table: &str,
+        (base, blocks): (&T, Option<&[B]>),
+        (parameters, drawn): (&[Parameter], &[RandomQuantity]),
+        time: Time,
+    ) -> Result<(), CampaignError> {
+        for (parameter, drawn) in parameters.iter().zip(drawn) {
+            let key = format!("{table}.{}", parameter.name);
+            if parameter.timing == Timing::Onset {
+                let written = Written {
+                    base: base.parameter(parameter.name),
+                    own: &|agent| blocks?[agent].parameter(parameter.name),
+                };
+                self.begins(table, written, drawn, time)?;
+            }
+            match parameter.resolution {
+                None => {}
+                Some(Resolution::Period) => {
+                    self.resolved(&key, drawn, |(low, _)| TAU / low, time)?
+                }
+                Some(Resolution::Frequency) => {
+                    self.resolved(&key, drawn, |(_, high)| high, time)?
+                }
+                Some(Resolution::Memory) => self.remembered(&key, drawn, time)?,
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses what begins after the run has ended.
     pub(super) fn begins(
         &self,
@@ -70,7 +104,7 @@ impl Check<'_> {
     }
 
     /// Refuses frequencies that a step cannot resolve: they would be seen as others.
-    pub(super) fn resolved(
+    fn resolved(
         &self,
         key: &str,
         drawn: &RandomQuantity,

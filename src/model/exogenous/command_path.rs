@@ -27,22 +27,22 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         let (zero, one) = (L::number(0.0), L::number(1.0));
         let now = L::number(f64::from(step));
         let mut gain = one;
-        for loss in &self.losses {
+        for loss in &self.lists.losses {
             gain = gain * (one - loss[c].at(now));
         }
-        for loss in &self.intermittents {
+        for loss in &self.lists.intermittents {
             let [lost, _] = loss.at(c, step, seed, episodes);
             gain = gain * (one - lost);
         }
         let mut bias = zero;
-        for added in &self.command_biases {
+        for added in &self.lists.command_biases {
             bias = bias + added[c].at(now);
         }
-        for leak in &self.leaks {
+        for leak in &self.lists.leaks {
             let others = team - self.last_command[c];
             bias = others.mul_add(leak[c].at(now), bias);
         }
-        for over in &self.hard_overs {
+        for over in &self.lists.hard_overs {
             let weight = over[c].weight(now);
             let left = one - weight;
             gain = gain * left;
@@ -51,7 +51,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         self.command_gain[c] = gain;
         self.command_bias[c] = bias;
         let mut slew = L::splat(L::Real::MAX);
-        for limit in &self.rate_limits {
+        for limit in &self.lists.rate_limits {
             slew = L::select_le(
                 L::number(0.5),
                 limit[c].weight(now),
@@ -61,12 +61,12 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         }
         self.slew[c] = slew;
         let mut blocked = zero;
-        for hold in &self.command_holds {
+        for hold in &self.lists.command_holds {
             let [holds, _] = hold.at(c, step, seed, episodes);
             blocked = blocked.max(holds);
         }
         self.blocked[c] = blocked;
-        for ring in &mut self.command_rings {
+        for ring in &mut self.lists.command_rings {
             ring.hold(c, step);
         }
     }
@@ -86,11 +86,11 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             if held {
                 (sent, other) = (zero, [self.last_sent[c]]);
             }
-            for ring in &self.command_rings {
+            for ring in &self.lists.command_rings {
                 other = ring.recall(c, recalled, other);
                 [sent] = ring.or_past(c, [sent], [zero]);
             }
-            if !self.command_holds.is_empty() && !first {
+            if !self.lists.command_holds.is_empty() && !first {
                 let blocked = self.blocked[c];
                 other = [L::select_le(half, blocked, self.last_arrived[c], other[0])];
                 sent = L::select_le(half, blocked, zero, sent);
@@ -122,7 +122,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             self.last_sent[c] = sent;
         }
         let mut carried = [self.last_sent[c]];
-        for ring in &mut self.command_rings {
+        for ring in &mut self.lists.command_rings {
             let recalled = ring.recall(c, Moment::Start, carried);
             ring.record(c, step, carried);
             carried = recalled;

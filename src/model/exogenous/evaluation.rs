@@ -7,7 +7,8 @@
 )]
 
 use super::delay_line::Moment;
-use super::inputs::{ExogenousInputs, Oscillation};
+use super::inputs::ExogenousInputs;
+use super::lists::Oscillation;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
@@ -26,7 +27,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             self.hold_command(c, step, team[c], seed, episodes);
             self.hold_sensor(c, step, seed, episodes);
             let mut force = self.constant[c];
-            for weight in &self.weights {
+            for weight in &self.lists.weights {
                 force = force + weight[c].at(now);
             }
             for turbulence in &self.turbulences {
@@ -34,20 +35,14 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             }
             self.held_disturbance[c] = force;
             let mut grown = one;
-            for inertia in &self.inertias {
+            for inertia in &self.lists.inertias {
                 grown = grown + inertia[c].at(now);
             }
             self.inverse_inertia[c] = self.first_inverse_inertia[c];
-            if !self.inertias.is_empty() {
+            if !self.lists.inertias.is_empty() {
                 self.inverse_inertia[c] = self.first_inverse_inertia[c] / grown;
             }
-            for waves in [
-                &mut self.sines,
-                &mut self.gusts,
-                &mut self.command_waves,
-                &mut self.sensor_waves,
-                &mut self.squares,
-            ] {
+            for waves in self.lists.waves_mut() {
                 for wave in waves {
                     wave[c].held = wave[c].switch.at(now);
                 }
@@ -66,33 +61,33 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         let zero = L::number(0.0);
         let now = L::number(f64::from(step));
         let mut sensor = zero;
-        for added in &self.sensor_biases {
+        for added in &self.lists.sensor_biases {
             sensor = sensor + added[c].at(now);
         }
-        for noise in &mut self.noises {
+        for noise in &mut self.lists.noises {
             if step.is_multiple_of(4) {
                 noise.draw(c, step / 4, seed, episodes);
             }
             let sample = noise.samples[c][(step % 4) as usize];
             sensor = sample.mul_add(noise.switch[c].at(now), sensor);
         }
-        for outlier in &self.outliers {
+        for outlier in &self.lists.outliers {
             let [size, sign] = outlier.at(c, step, seed, episodes);
             sensor = size.mul_add(sign, sensor);
         }
         self.held_sensor[c] = sensor;
         let mut scale = zero;
-        for added in &self.scales {
+        for added in &self.lists.scales {
             scale = scale + added[c].at(now);
         }
         self.scale[c] = scale;
         let mut frozen = zero;
-        for hold in &self.sensor_holds {
+        for hold in &self.lists.sensor_holds {
             let [holds, _] = hold.at(c, step, seed, episodes);
             frozen = frozen.max(holds);
         }
         self.frozen[c] = if step == 0 { zero } else { frozen };
-        for ring in &mut self.sensor_rings {
+        for ring in &mut self.lists.sensor_rings {
             ring.hold(c, step);
         }
     }
@@ -104,36 +99,36 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         let half = L::number(0.5);
         self.disturbance = self.held_disturbance;
         self.sensor_fault = self.held_sensor;
-        if moment == Moment::Start || !self.command_waves.is_empty() || self.carries() {
+        if moment == Moment::Start || !self.lists.command_waves.is_empty() || self.carries() {
             self.actuator.gain = self.command_gain;
             self.actuator.bias = self.command_bias;
         }
-        for sines in &mut self.sines {
+        for sines in &mut self.lists.sines {
             for c in 0..NC {
                 let sine = turned(&mut sines[c], advance);
                 self.disturbance[c] = sine.mul_add(sines[c].held, self.disturbance[c]);
             }
         }
-        for gusts in &mut self.gusts {
+        for gusts in &mut self.lists.gusts {
             for c in 0..NC {
                 let shape = turned(&mut gusts[c], advance).mul_add(half, half);
                 self.disturbance[c] = shape.mul_add(gusts[c].held, self.disturbance[c]);
             }
         }
-        for waves in &mut self.sensor_waves {
+        for waves in &mut self.lists.sensor_waves {
             for c in 0..NC {
                 let sine = turned(&mut waves[c], advance);
                 self.sensor_fault[c] = sine.mul_add(waves[c].held, self.sensor_fault[c]);
             }
         }
-        for squares in &mut self.squares {
+        for squares in &mut self.lists.squares {
             for c in 0..NC {
                 let sine = turned(&mut squares[c], advance);
                 let shape = (sine * squares[c].inverse_smoothing).tanh();
                 self.sensor_fault[c] = shape.mul_add(squares[c].held, self.sensor_fault[c]);
             }
         }
-        for waves in &mut self.command_waves {
+        for waves in &mut self.lists.command_waves {
             for c in 0..NC {
                 let sine = turned(&mut waves[c], advance);
                 self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
@@ -142,7 +137,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         if self.carries() {
             self.carry_command(step, moment);
         }
-        if !self.rate_limits.is_empty() {
+        if !self.lists.rate_limits.is_empty() {
             self.limit_rate(step, moment);
         }
     }
@@ -156,7 +151,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             position.mul_add(scale, position),
             velocity.mul_add(scale, velocity),
         ];
-        for ring in &self.sensor_rings {
+        for ring in &self.lists.sensor_rings {
             seen = ring.recall(c, moment, seen);
         }
         let [last_position, last_velocity] = self.last_measured[c];
@@ -167,7 +162,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         ]
     }
 
-    /// Takes in what was wanted and what was at the start of step number `step`.
+    /// Takes in what was demanded and what was at the start of step number `step`.
     #[inline(always)]
     pub(crate) fn remember(&mut self, c: usize, step: u32, sent: L, motion: [L; 2]) {
         self.last_measured[c] = self.measure(c, Moment::Start, motion);
@@ -179,7 +174,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             position.mul_add(scale, position),
             velocity.mul_add(scale, velocity),
         ];
-        for ring in &mut self.sensor_rings {
+        for ring in &mut self.lists.sensor_rings {
             let recalled = ring.recall(c, Moment::Start, seen);
             ring.record(c, step, seen);
             seen = recalled;

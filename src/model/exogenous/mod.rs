@@ -6,9 +6,10 @@ pub(crate) mod dryden;
 pub(crate) mod evaluation;
 mod inputs;
 pub(crate) mod kernels;
+pub(crate) mod lists;
 pub(crate) mod noise;
 mod start;
 pub(crate) mod vortex;
 pub(crate) mod window;
 
-pub(crate) use inputs::{ExogenousInputs, Oscillation};
+pub(crate) use inputs::ExogenousInputs;

@@ -1,7 +1,8 @@
 //! When what acts on an agent begins and ends.
 
 use super::block::small;
-use crate::campaign::{Campaign, DisturbanceKind};
+use crate::campaign::Campaign;
+use crate::campaign::kinds::{GUST_DURATION, GUST_ONSET};
 use crate::draw::AgentDraw;
 
 /// The steps at which what an agent meets begins or ends.
@@ -12,17 +13,20 @@ pub(crate) fn changes(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
     let ends = faults
         .filter(|fault| fault.duration_s.is_finite())
         .map(|fault| fault.end_step(time));
-    let gusts = campaign.disturbances.iter().zip(&draw.disturbances);
-    let gusts = gusts.filter(|(gust, _)| gust.kind == DisturbanceKind::Gust1Cosine);
-    let gusts = gusts.flat_map(|(_, values)| {
-        let spans = values[2].iter().zip(&values[3]);
-        spans.flat_map(move |(&onset_s, &duration_s)| {
-            let onset = time.onset_step(onset_s);
-            [
-                onset,
-                onset.saturating_add(small(time.whole_steps(duration_s))),
-            ]
-        })
+    // What begins and ends by parameters of its own.
+    let spans = campaign.disturbances.iter().zip(&draw.disturbances);
+    let spans = spans.filter_map(|(disturbance, values)| {
+        let parameters = disturbance.kind.parameters();
+        let onset_s = &values[GUST_ONSET.place_in(parameters)?];
+        let duration_s = &values[GUST_DURATION.place_in(parameters)?];
+        Some(onset_s.iter().zip(duration_s))
+    });
+    let gusts = spans.flatten().flat_map(|(&onset_s, &duration_s)| {
+        let onset = time.onset_step(onset_s);
+        [
+            onset,
+            onset.saturating_add(small(time.whole_steps(duration_s))),
+        ]
     });
     let begins = later_onsets(campaign, draw);
     begins.into_iter().chain(ends).chain(gusts).collect()

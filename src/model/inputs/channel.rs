@@ -35,7 +35,7 @@ impl LaneBlock<'_> {
         let mut signals = ExogenousInputs::none();
         signals.hold_steps = campaign.control.hold_steps;
         if campaign.control.delay_s.is_some() {
-            signals.command_rings.push(self.control_delay(agent));
+            signals.lists.command_rings.push(self.control_delay(agent));
         }
         for (index, disturbance) in campaign.disturbances.iter().enumerate() {
             self.add_disturbance(&mut signals, disturbance, index, agent, first, entries);

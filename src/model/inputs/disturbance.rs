@@ -3,16 +3,28 @@
 
 use super::block::{LaneBlock, Selection};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
-use crate::campaign::{Disturbance, DisturbanceKind};
+use crate::campaign::kinds::{
+    AIRSPEED, ALTITUDE, AMPLITUDE, FREQUENCY, GUST_DURATION, GUST_ONSET, GUST_SPEED, JET_FORCE,
+    JET_LENGTH, JET_RADIUS, MEAN_WIND, PHASE, SERIES_SHARE, WIND_GAIN,
+};
+use crate::campaign::{Disturbance, DisturbanceKind, Parameter};
 use crate::draw::{AgentDraw, member};
+use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::dryden::{Dryden, at_rest};
+use crate::model::exogenous::lists::Oscillation;
 use crate::model::exogenous::noise::{Filter, Turbulence};
 use crate::model::exogenous::vortex::Vortex;
 use crate::model::exogenous::window::Window;
-use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::random::philox::{Address, Stream};
 use std::f64::consts::TAU;
+
+/// The value of a parameter on a channel; not a number if the kind has no such parameter, which would be a mistake of
+/// this file that no episode survives.
+fn value(kind: DisturbanceKind, draw: &[Vec<f64>], parameter: &Parameter, channel: usize) -> f64 {
+    let place = parameter.place_in(kind.parameters());
+    place.map_or(f64::NAN, |place| draw[place][channel])
+}
 
 impl LaneBlock<'_> {
     /// Adds what a disturbance does, if it may act (or does) in some lane.
@@ -25,8 +37,15 @@ impl LaneBlock<'_> {
         first: usize,
         entries: Selection,
     ) {
-        let values = |parameter: usize, c: usize| {
-            self.lanes::<L>(agent, |draw| draw.disturbances[index][parameter][first + c])
+        let values = |parameter: &Parameter, c: usize| {
+            self.lanes::<L>(agent, |draw| {
+                value(
+                    disturbance.kind,
+                    &draw.disturbances[index],
+                    parameter,
+                    first + c,
+                )
+            })
         };
         let acts = |force: &dyn Fn(usize) -> [f64; MAX_WIDTH]| {
             let acting = || (0..NC).any(|c| force(c).iter().any(|force| *force != 0.0));
@@ -35,28 +54,32 @@ impl LaneBlock<'_> {
         match disturbance.kind {
             DisturbanceKind::Constant => {
                 for (c, constant) in signals.constant.iter_mut().enumerate() {
-                    *constant = *constant + L::load(&values(0, c));
+                    *constant = *constant + L::load(&values(&AMPLITUDE, c));
                 }
             }
             DisturbanceKind::GroundReaction => {
                 for (c, ground) in signals.ground.iter_mut().enumerate() {
-                    *ground = *ground + L::load(&values(0, c));
+                    *ground = *ground + L::load(&values(&SERIES_SHARE, c));
                 }
             }
-            DisturbanceKind::Sine if acts(&|c| values(0, c)) => {
-                signals.sines.push(std::array::from_fn(|c| Oscillation {
-                    switch: Window::always(L::load(&values(0, c))),
-                    inverse_smoothing: L::number(0.0),
-                    phase: L::turns(&values(2, c).map(|phase_rad| phase_rad / TAU)),
-                    advance: self
-                        .advance::<L>(values(1, c).map(|frequency_rad_s| frequency_rad_s / TAU)),
-                    held: L::number(0.0),
-                }));
+            DisturbanceKind::Sine if acts(&|c| values(&AMPLITUDE, c)) => {
+                signals
+                    .lists
+                    .sines
+                    .push(std::array::from_fn(|c| Oscillation {
+                        switch: Window::always(L::load(&values(&AMPLITUDE, c))),
+                        inverse_smoothing: L::number(0.0),
+                        phase: L::turns(&values(&PHASE, c).map(|phase_rad| phase_rad / TAU)),
+                        advance: self.advance::<L>(
+                            values(&FREQUENCY, c).map(|frequency_rad_s| frequency_rad_s / TAU),
+                        ),
+                        held: L::number(0.0),
+                    }));
             }
             DisturbanceKind::Gust1Cosine => {
                 let blows = |c: usize| disturbance.kind.acts_on(first + c);
                 let force = |c: usize| {
-                    let (speed_m_s, gain_n_s_m) = (values(0, c), values(1, c));
+                    let (speed_m_s, gain_n_s_m) = (values(&GUST_SPEED, c), values(&WIND_GAIN, c));
                     std::array::from_fn(|lane| {
                         if blows(c) {
                             speed_m_s[lane] * gain_n_s_m[lane]
@@ -66,9 +89,10 @@ impl LaneBlock<'_> {
                     })
                 };
                 if acts(&force) {
-                    let waves =
-                        std::array::from_fn(|c| self.gust(force(c), values(2, c), values(3, c)));
-                    signals.gusts.push(waves);
+                    let waves = std::array::from_fn(|c| {
+                        self.gust(force(c), values(&GUST_ONSET, c), values(&GUST_DURATION, c))
+                    });
+                    signals.lists.gusts.push(waves);
                 }
             }
             DisturbanceKind::Dryden => {
@@ -76,7 +100,7 @@ impl LaneBlock<'_> {
                 if (0..NC).any(blows) {
                     signals
                         .turbulences
-                        .push(self.turbulence(agent, index, first));
+                        .push(self.turbulence(agent, disturbance, index, first));
                 }
             }
             DisturbanceKind::Sine | DisturbanceKind::RotorVortex => {}
@@ -95,18 +119,23 @@ impl LaneBlock<'_> {
         }
         let all = self.campaign.disturbances.iter().enumerate();
         let felt = all.filter(|(_, disturbance)| disturbance.kind == DisturbanceKind::RotorVortex);
-        felt.filter_map(|(index, _)| {
-            let of = |parameter: usize, pick: fn(f64) -> f64| {
+        felt.filter_map(|(index, felt)| {
+            let of = |parameter: &Parameter, pick: fn(f64) -> f64| {
                 self.lanes::<L>(agent, |draw| {
-                    pick(draw.disturbances[index][parameter][HEIGHT])
+                    pick(value(
+                        felt.kind,
+                        &draw.disturbances[index],
+                        parameter,
+                        HEIGHT,
+                    ))
                 })
             };
-            let force_n = of(0, |force_n| force_n);
+            let force_n = of(&JET_FORCE, |force_n| force_n);
             let acts = force_n.iter().any(|force_n| *force_n != 0.0);
             (acts || entries == Selection::Possible).then(|| Vortex {
                 force: L::load(&force_n),
-                inverse_radius: L::load(&of(1, f64::recip)),
-                inverse_length: L::load(&of(2, |length_m| 2.0 / length_m)),
+                inverse_radius: L::load(&of(&JET_RADIUS, f64::recip)),
+                inverse_length: L::load(&of(&JET_LENGTH, |length_m| 2.0 / length_m)),
             })
         })
         .collect()
@@ -144,6 +173,7 @@ impl LaneBlock<'_> {
     fn turbulence<L: Lane, const NC: usize>(
         &self,
         agent: usize,
+        disturbance: &Disturbance,
         index: usize,
         first: usize,
     ) -> Turbulence<L, NC> {
@@ -151,14 +181,21 @@ impl LaneBlock<'_> {
         let entry = u32::try_from(index).unwrap_or(u32::MAX);
         let members = std::array::from_fn(|c| member(agent, first + c));
         let filter = |c: usize, draw: &AgentDraw| {
-            let of = |parameter: usize| draw.disturbances[index][parameter][first + c];
+            let of = |parameter: &Parameter| {
+                value(
+                    disturbance.kind,
+                    &draw.disturbances[index],
+                    parameter,
+                    first + c,
+                )
+            };
             if first + c < FIRST_ATTITUDE {
                 let wind = Dryden {
-                    wind_m_s: of(0),
-                    altitude_m: of(1),
-                    airspeed_m_s: of(2),
+                    wind_m_s: of(&MEAN_WIND),
+                    altitude_m: of(&ALTITUDE),
+                    airspeed_m_s: of(&AIRSPEED),
                 };
-                wind.filter(first + c, of(3), campaign.time.step_s)
+                wind.filter(first + c, of(&WIND_GAIN), campaign.time.step_s)
             } else {
                 Filter::still()
             }

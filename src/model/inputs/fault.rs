@@ -2,12 +2,17 @@
 
 use super::block::{LaneBlock, Selection, small};
 use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
-use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link};
+use crate::campaign::kinds::{
+    AMPLITUDE, DELAY, DRIFT_RATE, FREQUENCY, GROWTH, LARGEST_RATE, LOST_SHARE, MAGNITUDE, OFFSET_X,
+    OFFSET_Y, PAYLOAD_MASS, PERIOD, PHASE, SHARE, SLOT, SMOOTHING, STD, WINDOW,
+};
+use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link, Parameter};
 use crate::draw::{AgentDraw, FaultDraw, member};
+use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::delay_line::DelayLine;
+use crate::model::exogenous::lists::{Oscillation, SignalLists};
 use crate::model::exogenous::noise::Noise;
 use crate::model::exogenous::window::{IntermittentWindow, Window};
-use crate::model::exogenous::{ExogenousInputs, Oscillation};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 use std::f64::consts::TAU;
 
@@ -44,99 +49,97 @@ impl FaultLanes<'_> {
         if !listed {
             return;
         }
-        let measured = fault.link == Link::Measurement;
         let step_s = self.block.campaign.time.step_s;
         signals.rises |= fault.ramp_s.is_some() || fault.kind == FaultKind::Drift;
-        let value = |parameter: usize, c: usize| self.values::<L>(parameter, c);
+        let lists = &mut signals.lists;
+        let values = |parameter: &Parameter, c: usize| self.values::<L>(parameter, c);
+        let windows = |parameter: &Parameter| self.switches(&|c| values(parameter, c));
+        let bursts = |value: &Parameter, slot_s: Option<&Parameter>| {
+            self.bursts(&|c| values(value, c), slot_s, Some(&SHARE))
+        };
         let one = [1.0; MAX_WIDTH];
         let held = |slot_s, share| self.bursts(&|_| one, slot_s, share);
         match fault.kind {
-            FaultKind::LossOfEffectiveness => signals.losses.push(self.switches(&|c| value(0, c))),
-            FaultKind::Float => signals.losses.push(self.switches(&|_| one)),
-            FaultKind::Intermittent => {
-                let bursts = self.bursts(&|c| value(0, c), Some(1), Some(2));
-                signals.intermittents.push(bursts);
-            }
-            FaultKind::HardOver => signals.hard_overs.push(self.switches(&|c| value(0, c))),
+            FaultKind::LossOfEffectiveness => lists.losses.push(windows(&LOST_SHARE)),
+            FaultKind::Float => lists.losses.push(self.switches(&|_| one)),
+            FaultKind::Intermittent => lists.intermittents.push(bursts(&LOST_SHARE, Some(&SLOT))),
+            FaultKind::HardOver => lists.hard_overs.push(windows(&MAGNITUDE)),
             FaultKind::Bias | FaultKind::FalseData | FaultKind::Drift => {
-                let list = if measured {
-                    &mut signals.sensor_biases
-                } else {
-                    &mut signals.command_biases
+                let added = match fault.kind {
+                    FaultKind::Drift => self.switches(&|c| self.drifted::<L>(c)),
+                    _ => windows(&MAGNITUDE),
                 };
-                list.push(self.switches(&|c| match fault.kind {
-                    FaultKind::Drift => self.drifted::<L>(c),
-                    _ => value(0, c),
-                }));
+                match fault.link {
+                    Link::Measurement => lists.sensor_biases.push(added),
+                    Link::Command => lists.command_biases.push(added),
+                }
             }
-            FaultKind::Stuck => signals
-                .rate_limits
-                .push(self.switches(&|_| [0.0; MAX_WIDTH])),
+            FaultKind::Stuck => lists.rate_limits.push(self.switches(&|_| [0.0; MAX_WIDTH])),
             FaultKind::RateLimit => {
-                let limits = self.switches(&|c| value(0, c).map(|rate| rate * step_s));
-                signals.rate_limits.push(limits);
+                let limit = |c| values(&LARGEST_RATE, c).map(|rate| rate * step_s);
+                lists.rate_limits.push(self.switches(&limit));
             }
             FaultKind::Oscillatory => {
-                let waves = self.waves(&|c| value(1, c).map(|w| w / TAU), 2, None);
-                if measured {
-                    signals.sensor_waves.push(waves);
-                } else {
-                    signals.command_waves.push(waves);
+                let waves = self.waves(&|c| values(&FREQUENCY, c).map(|w| w / TAU), None);
+                match fault.link {
+                    Link::Measurement => lists.sensor_waves.push(waves),
+                    Link::Command => lists.command_waves.push(waves),
                 }
             }
             FaultKind::SmoothedSquare => {
-                let waves = self.waves(&|c| value(1, c).map(f64::recip), 3, Some(2));
-                signals.squares.push(waves);
+                let frequency_hz = |c| values(&PERIOD, c).map(f64::recip);
+                lists
+                    .squares
+                    .push(self.waves(&frequency_hz, Some(&SMOOTHING)));
             }
-            FaultKind::Delay | FaultKind::Replay => self.add_delay_line(signals),
-            FaultKind::Scale => signals.scales.push(self.switches(&|c| value(0, c))),
-            FaultKind::Noise => signals.noises.push(self.noise()),
-            FaultKind::Outlier => {
-                signals
-                    .outliers
-                    .push(self.bursts(&|c| value(0, c), None, Some(1)))
+            FaultKind::Delay | FaultKind::Replay => self.add_delay_line(lists),
+            FaultKind::Scale => lists.scales.push(windows(&MAGNITUDE)),
+            FaultKind::Noise => lists.noises.push(self.noise()),
+            FaultKind::Outlier => lists.outliers.push(bursts(&AMPLITUDE, None)),
+            FaultKind::Freeze => lists.sensor_holds.push(held(None, None)),
+            FaultKind::Dropout => lists.sensor_holds.push(held(Some(&SLOT), Some(&SHARE))),
+            FaultKind::DenialOfService => {
+                let holds = held(Some(&SLOT), Some(&SHARE));
+                match fault.link {
+                    Link::Measurement => lists.sensor_holds.push(holds),
+                    Link::Command => lists.command_holds.push(holds),
+                }
             }
-            FaultKind::Freeze => signals.sensor_holds.push(held(None, None)),
-            FaultKind::Dropout => signals.sensor_holds.push(held(Some(0), Some(1))),
-            FaultKind::DenialOfService if measured => {
-                signals.sensor_holds.push(held(Some(0), Some(1)));
-            }
-            FaultKind::DenialOfService => signals.command_holds.push(held(Some(0), Some(1))),
-            FaultKind::Interference => signals.leaks.push(self.switches(&|c| value(0, c))),
+            FaultKind::Interference => lists.leaks.push(windows(&MAGNITUDE)),
             FaultKind::Mass | FaultKind::Inertia | FaultKind::CenterOfMass | FaultKind::Payload => {
-                self.add_plant_change(signals);
+                self.add_plant_change(lists);
             }
         }
     }
 
     /// A delay or a replay of what is commanded or measured.
-    fn add_delay_line<L: Lane, const NC: usize>(&self, signals: &mut ExogenousInputs<L, NC>) {
+    fn add_delay_line<L: Lane, const NC: usize>(&self, lists: &mut SignalLists<L, NC>) {
         let records = self.fault.kind == FaultKind::Delay;
         let switches = self.switches(&|_| [1.0; MAX_WIDTH]);
         let lengths = std::array::from_fn(|c| self.ring_steps::<L>(c));
         if self.fault.link == Link::Measurement {
             let line = DelayLine::new(records, switches, lengths);
-            signals.sensor_rings.push(line);
+            lists.sensor_rings.push(line);
         } else {
             let line = DelayLine::new(records, switches, lengths);
-            signals.command_rings.push(line);
+            lists.command_rings.push(line);
         }
     }
 
     /// A changed mass: by what share the inertia grows, and which force comes with it.
-    fn add_plant_change<L: Lane, const NC: usize>(&self, signals: &mut ExogenousInputs<L, NC>) {
+    fn add_plant_change<L: Lane, const NC: usize>(&self, lists: &mut SignalLists<L, NC>) {
         let changed = |c: usize| self.plant_change::<L>(c);
         let inertias = self.switches(&|c| changed(c).map(|change| change.inertia));
-        signals.inertias.push(inertias);
+        lists.inertias.push(inertias);
         let weights = self.switches(&|c| changed(c).map(|change| change.force));
-        signals.weights.push(weights);
+        lists.weights.push(weights);
     }
 
     fn noise<L: Lane, const NC: usize>(&self) -> Noise<L, NC> {
         Noise {
             entry: self.entry(),
             members: self.members(),
-            switch: self.switches(&|c| self.values::<L>(0, c)),
+            switch: self.switches(&|c| self.values::<L>(&STD, c)),
             samples: [[L::number(0.0); 4]; NC],
         }
     }
@@ -153,8 +156,15 @@ impl FaultLanes<'_> {
         self.lanes::<L>(&struck).contains(&1.0)
     }
 
-    fn values<L: Lane>(&self, parameter: usize, c: usize) -> [f64; MAX_WIDTH] {
-        self.lanes::<L>(&|draw| draw.parameters[parameter][self.first + c])
+    fn values<L: Lane>(&self, parameter: &Parameter, c: usize) -> [f64; MAX_WIDTH] {
+        self.lanes::<L>(&|draw| self.value(draw, parameter, self.first + c))
+    }
+
+    /// The value of a parameter on a channel; not a number if the fault's kind has no such parameter, which would be a
+    /// mistake of this file that no episode survives.
+    fn value(&self, draw: &FaultDraw, parameter: &Parameter, channel: usize) -> f64 {
+        let place = parameter.place_in(self.fault.kind.parameters());
+        place.map_or(f64::NAN, |place| draw.parameters[place][channel])
     }
 
     /// A value from the fault's onset to its end, along its ramp.
@@ -199,7 +209,9 @@ impl FaultLanes<'_> {
     /// What a drift amounts to at the end of the run, if nothing ends it before.
     fn drifted<L: Lane>(&self, c: usize) -> [f64; MAX_WIDTH] {
         let step_s = self.block.campaign.time.step_s;
-        self.lanes::<L>(&|draw| draw.parameters[0][self.first + c] * self.steps_left(draw) * step_s)
+        self.lanes::<L>(&|draw| {
+            self.value(draw, &DRIFT_RATE, self.first + c) * self.steps_left(draw) * step_s
+        })
     }
 
     /// Steps from the onset to the end of the run, both of which are shown.
@@ -232,8 +244,8 @@ impl FaultLanes<'_> {
     fn bursts<L: Lane, const NC: usize>(
         &self,
         value: &dyn Fn(usize) -> [f64; MAX_WIDTH],
-        slot_s: Option<usize>,
-        share: Option<usize>,
+        slot_s: Option<&Parameter>,
+        share: Option<&Parameter>,
     ) -> IntermittentWindow<L, NC> {
         let time = self.block.campaign.time;
         IntermittentWindow {
@@ -260,16 +272,15 @@ impl FaultLanes<'_> {
     fn waves<L: Lane, const NC: usize>(
         &self,
         frequency_hz: &dyn Fn(usize) -> [f64; MAX_WIDTH],
-        phase_rad: usize,
-        smoothing: Option<usize>,
+        smoothing: Option<&Parameter>,
     ) -> [Oscillation<L>; NC] {
         std::array::from_fn(|c| Oscillation {
-            switch: self.switch(c, self.values::<L>(0, c)),
+            switch: self.switch(c, self.values::<L>(&AMPLITUDE, c)),
             inverse_smoothing: match smoothing {
                 Some(smoothing) => L::load(&self.values::<L>(smoothing, c).map(f64::recip)),
                 None => L::number(0.0),
             },
-            phase: L::turns(&self.values::<L>(phase_rad, c).map(|phase| phase / TAU)),
+            phase: L::turns(&self.values::<L>(&PHASE, c).map(|phase| phase / TAU)),
             advance: self.block.advance::<L>(frequency_hz(c)),
             held: L::number(0.0),
         })
@@ -279,10 +290,11 @@ impl FaultLanes<'_> {
     fn ring_steps<L: Lane>(&self, c: usize) -> [u32; MAX_WIDTH] {
         let time = self.block.campaign.time;
         let steps = self.lanes::<L>(&|draw| {
-            let steps = time.whole_steps(draw.parameters[0][self.first + c]);
+            let steps =
+                |length_s: &Parameter| time.whole_steps(self.value(draw, length_s, self.first + c));
             match self.fault.kind {
-                FaultKind::Replay => steps.min(f64::from(time.onset_step(draw.onset_s))),
-                _ => steps,
+                FaultKind::Replay => steps(&WINDOW).min(f64::from(time.onset_step(draw.onset_s))),
+                _ => steps(&DELAY),
             }
         });
         steps.map(|steps| small(steps).max(1))
@@ -292,7 +304,8 @@ impl FaultLanes<'_> {
         let channel = self.first + c;
         let agent = &self.block.campaign.agent;
         let change = |draw: &AgentDraw| {
-            let of = |parameter: usize| draw.faults[self.index].parameters[parameter][channel];
+            let of =
+                |parameter: &Parameter| self.value(&draw.faults[self.index], parameter, channel);
             match (self.fault.kind, agent) {
                 (FaultKind::Mass, Agent::Uav(_)) if channel >= FIRST_ATTITUDE => {
                     PlantChange::default()
@@ -301,16 +314,25 @@ impl FaultLanes<'_> {
                     PlantChange::default()
                 }
                 (FaultKind::Mass | FaultKind::Inertia, _) => PlantChange {
-                    inertia: of(0),
+                    inertia: of(&GROWTH),
                     force: 0.0,
                 },
                 (FaultKind::CenterOfMass, Agent::Uav(uav)) => PlantChange {
                     inertia: 0.0,
-                    force: tilting(uav, channel, uav.mass_kg * draw.mass_scale, [of(0), of(1)]),
+                    force: tilting(
+                        uav,
+                        channel,
+                        uav.mass_kg * draw.mass_scale,
+                        [of(&OFFSET_X), of(&OFFSET_Y)],
+                    ),
                 },
-                (FaultKind::Payload, Agent::Uav(uav)) => {
-                    loaded(uav, draw, channel, of(0), [of(1), of(2)])
-                }
+                (FaultKind::Payload, Agent::Uav(uav)) => loaded(
+                    uav,
+                    draw,
+                    channel,
+                    of(&PAYLOAD_MASS),
+                    [of(&OFFSET_X), of(&OFFSET_Y)],
+                ),
                 _ => PlantChange::default(),
             }
         };

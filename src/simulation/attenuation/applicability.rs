@@ -3,9 +3,7 @@
 
 use crate::agent::robot::LEG_JOINTS;
 use crate::agent::{ActuationKind, Agent};
-use crate::campaign::{
-    Campaign, DisturbanceKind, Fault, FaultKind, FaultTarget, IntegralKind, Link, Time,
-};
+use crate::campaign::{Campaign, DisturbanceKind, Fault, FaultTarget, IntegralKind, Link, Time};
 use crate::draw::{AgentDraw, FaultDraw};
 use thiserror::Error;
 
@@ -85,7 +83,7 @@ pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option
     }
     let rough = |kind: DisturbanceKind| {
         let reaches = |struck| kind.acts_on(struck) && command_meets(campaign, struck, channel);
-        !is_smooth_force(kind) && (0..campaign.channels().len()).any(reaches)
+        !kind.is_smooth() && (0..campaign.channels().len()).any(reaches)
     };
     for (entry, disturbance) in campaign.disturbances.iter().enumerate() {
         if rough(disturbance.kind) {
@@ -107,7 +105,7 @@ pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option
         })
 }
 
-/// Whether a fault as drawn is continuously differentiable in time from t = 0 on. A kind that is not named here is not.
+/// Whether a fault as drawn is continuously differentiable in time from t = 0 on.
 #[must_use]
 pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
     // All fields by name: whoever adds one decides here what it does to smoothness.
@@ -136,30 +134,7 @@ pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
         _ if onset >= time.steps => true,
         _ if duration_s.is_finite() || *ramp_s > 0.0 => false,
         // A constant share or offset, and smooth waves, that are there from the start.
-        FaultKind::LossOfEffectiveness
-        | FaultKind::Bias
-        | FaultKind::FalseData
-        | FaultKind::Oscillatory
-        | FaultKind::SmoothedSquare
-        | FaultKind::Mass
-        | FaultKind::Inertia
-        | FaultKind::CenterOfMass
-        | FaultKind::Payload => onset == 0,
-        // What comes later is not smooth unless it is named above.
-        _ => false,
-    }
-}
-
-/// Whether a disturbance is continuously differentiable in time. Turbulence is not, nor is the ground's reaction: feet
-/// lift and touch down.
-fn is_smooth_force(kind: DisturbanceKind) -> bool {
-    match kind {
-        // A gust begins and ends with a rate of zero, and so does a jet at the height of its rotors.
-        DisturbanceKind::Sine
-        | DisturbanceKind::Constant
-        | DisturbanceKind::Gust1Cosine
-        | DisturbanceKind::RotorVortex => true,
-        DisturbanceKind::Dryden | DisturbanceKind::GroundReaction => false,
+        kind => kind.is_smooth() && onset == 0,
     }
 }
 

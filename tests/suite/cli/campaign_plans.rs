@@ -20,7 +20,7 @@ magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nagents = [{}, {}] :: fa
 probability = 0.25 => background = true && [verdict] => [[strata]]\nfaults = ["actuator loss-of-effectiveness"]\n[verdict] :: strata[0].faults[0] ~ "actuator loss-of-effectiveness": this fault is part of the background of all strata; remove it from the list
 kind = "sine"     => kind = "sine"\nagents = [{}, { probability = 0.5 }, {}] :: agents ~ unknown key `probability`
 magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fault[0].link (line 58) = given ~ only the network has two ways ~ target = "network"
-[verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nramp_s = 1.0\n[verdict] :: fault[2].ramp_s (line 71) = 1.0 ~ "stuck" is there or not; remove it
+[verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nramp_s = 1.0\n[verdict] :: fault[2].ramp_s (line 71) = 1.0 ~ "stuck" cannot build up gradually; remove it
 [verdict] => [[fault]]\ntarget = "actuator"\nkind = "delay"\ndelay_s = 3.0\n[verdict] :: fault[2].delay_s (line 71) = up to 3 s ~ at most 1024 steps of 0.002 s are remembered, 2.048 s
 [verdict] => [[fault]]\ntarget = "network"\nkind = "replay"\nwindow_s = { uniform = [1.0, 3.0] }\n[verdict] :: fault[2].window_s (line 71) = up to 3 s ~ 2.048 s; shorten it
 [verdict] => [[fault]]\ntarget = "network"\nkind = "interference"\nlink = "measurement"\nmagnitude = 0.1\n[verdict] :: fault[2].link (line 71) = "measurement" ~ on the way of the command
@@ -33,7 +33,7 @@ magnitude = { uniform = [0.1, 0.5] } => magnitude = 0.2\nlink = "command" :: fau
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 1.0\nairspeed_m_s = 5.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].altitude_m (line 71) = 1.0 ~ within [3, 305]
 [verdict] => [[disturbance]]\nkind = "dryden"\nintensity = "light"\naltitude_m = 10.0\nairspeed_m_s = 0.0\ngain_n_s_m = 1.0\n[verdict] :: disturbance[1].airspeed_m_s (line 72) = 0.0 ~ at least
 [verdict] => [[disturbance]]\nkind = "gust-1-cosine"\nspeed_m_s = 5.0\ngain_n_s_m = 1.0\nonset_s = 1.0\nduration_s = 1.0\nagents = [{}, {}, { onset_s = 7.0 }]\n[verdict] :: disturbance[1].agents[2].onset_s (line 74) = 7.0 ~ before the end
-[verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nagents = [{}, { ramp_s = 1.0 }, {}]\n[verdict] :: fault[2].agents[1].ramp_s (line 71) = 1.0: "stuck" is there or not; remove it
+[verdict] => [[fault]]\ntarget = "actuator"\nkind = "stuck"\nagents = [{}, { ramp_s = 1.0 }, {}]\n[verdict] :: fault[2].agents[1].ramp_s (line 71) = 1.0: "stuck" cannot build up gradually; remove it
 [verdict] => [[disturbance]]\nkind = "gust-1-cosine"\nspeed_m_s = 5.0\ngain_n_s_m = 1.0\nonset_s = 7.0\nduration_s = 1.0\n[verdict] :: disturbance[1].onset_s (line 72) = 7.0 ~ before the end
 [verdict] => [control]\nrate_hz = 300.0\n[verdict] :: control.rate_hz (line 69) = 300.0 ~ whole steps ~ use 250
 [verdict] => [control]\ndelay_s = 4.0\n[verdict] :: control.delay_s (line 69) = up to 4 s ~ remembered

@@ -8,7 +8,7 @@ use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link}
 
 /// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.
 fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
-    for kind in FaultKind::ALL {
+    for &kind in FaultKind::ALL {
         let there = campaign.faults.iter().any(|fault| fault.kind == kind);
         assert_eq!(there, !missing.contains(&kind), "{}", kind.name());
     }
