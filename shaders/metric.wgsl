@@ -14,6 +14,7 @@ struct Sums {
 struct Extremes {
     error: f32,
     command: f32,
+    rate: f32,
 }
 
 // Of the steps since the last flush: short sums keep the digits of single precision. The sums of the steps before are
@@ -28,6 +29,7 @@ var<private> outside_before_fault: i32;
 // What the channel shows at the start of a step.
 struct Sample {
     error: f32,
+    error_rate: f32,
     command: f32,
     excess: f32,
     // f1hat - f1.
@@ -43,6 +45,7 @@ fn metrics_resume() {
     largest = Extremes(
         stored_number(LARGEST),
         stored_number(LARGEST + 1u),
+        stored_number(LARGEST + 2u),
     );
     recent = Sums(
         stored_number(RECENT),
@@ -60,6 +63,7 @@ fn metrics_keep() {
     store(OUTSIDE_BEFORE_FAULT, bitcast<u32>(outside_before_fault));
     store_number(LARGEST, largest.error);
     store_number(LARGEST + 1u, largest.command);
+    store_number(LARGEST + 2u, largest.rate);
     store_number(RECENT, recent.square);
     store_number(RECENT + 1u, recent.absolute);
     store_number(RECENT + 2u, recent.effort);
@@ -79,6 +83,7 @@ fn metrics_take(sample: Sample, settled: bool, settled_error: f32, now: i32) {
     }
     if settled {
         largest.error = lane_max(largest.error, size);
+        largest.rate = lane_max(largest.rate, abs(sample.error_rate));
         recent.square = fma(size, size, recent.square);
         recent.absolute = recent.absolute + size;
         let first = sample.actuator_fault_error;

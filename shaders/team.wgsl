@@ -147,6 +147,7 @@ fn agent_observe(response: Response, off: vec2<f32>, settled: bool, now: u32) {
     let f1 = response.error_acceleration - response.applied_feedback;
     let sample = Sample(
         stepped_start[1],
+        stepped_start[2],
         response.command,
         response.excess,
         estimates.x - f1,

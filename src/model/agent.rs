@@ -226,6 +226,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
             let f1 = response.error_acceleration[c] - response.applied_feedback[c];
             let sample = Sample {
                 error: state[1],
+                error_rate: state[2],
                 command: response.command[c],
                 excess: response.excess[c],
                 actuator_fault_error: f1_hat - f1,

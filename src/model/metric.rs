@@ -56,6 +56,7 @@ kept! {
     Extremes {
         error,
         command,
+        rate,
     }
 }
 
@@ -76,6 +77,7 @@ pub(crate) struct Metrics<L> {
 /// What one channel shows at the start of a step.
 pub(crate) struct Sample<L> {
     pub(crate) error: L,
+    pub(crate) error_rate: L,
     pub(crate) command: L,
     pub(crate) excess: L,
     /// f1hat - f1.
@@ -133,6 +135,8 @@ metrics! {
         ise,
         /// Integral of |e| dt.
         iae,
+        /// Largest |e'|.
+        peak_rate,
     }
     others {
         /// Integral of u^2 dt.
@@ -179,6 +183,7 @@ impl<L: Lane> Metrics<L> {
         }
         if SETTLED {
             self.largest.error = self.largest.error.max(size);
+            self.largest.rate = self.largest.rate.max(sample.error_rate.abs());
             recent.square = size.mul_add(size, recent.square);
             recent.absolute = recent.absolute + size;
             let (first, second) = (sample.actuator_fault_error, sample.sensor_fault_error);
@@ -229,6 +234,7 @@ impl<L: Lane> Metrics<L> {
                 max_abs: largest.error[lane],
                 ise: total.square[lane] * step_s,
                 iae: total.absolute[lane] * step_s,
+                peak_rate: largest.rate[lane],
                 effort: total.effort[lane] * step_s,
                 u_max: largest.command[lane],
                 saturated_fraction: total.limited[lane] / f64::from(steps),

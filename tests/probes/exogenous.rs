@@ -232,10 +232,10 @@ pub(super) fn metrics<P: Flies<NC, NX>, const NC: usize, const NS: usize, const 
 ) -> Compared {
     let body = "
         load();
-        let sample = Sample(number(0u), number(1u), number(2u), number(3u), number(4u));
+        let sample = Sample(number(0u), number(5u), number(1u), number(2u), number(3u), number(4u));
         metrics_take(sample, step >= 500u, own.limits.y, i32(step));";
     let inputs = |n: &mut Numbers, c: usize| {
-        let mut words = sized([1.0, 2.0, 1.0, 1.0, 1.0])(n, c);
+        let mut words = sized([1.0, 2.0, 1.0, 1.0, 1.0, 3.0])(n, c);
         // At the limit and just beyond it, and what is not cut or not a number.
         let settled = world.limits[c].settled_error;
         let error = f32::from_bits(words[0]);
@@ -256,9 +256,11 @@ pub(super) fn metrics<P: Flies<NC, NX>, const NC: usize, const NS: usize, const 
                 excess,
                 actuator_fault_error,
                 sensor_fault_error,
+                error_rate,
             ] = scene.numbers(a, c);
             let sample = Sample {
                 error,
+                error_rate,
                 command,
                 excess,
                 actuator_fault_error,

@@ -64,6 +64,7 @@ mod house;
 mod lanes;
 mod lapack;
 mod leg;
+mod metrics;
 mod model;
 mod overlay;
 mod paper;
