@@ -1,12 +1,14 @@
 // Twin of src/model/exogenous/delay_line.rs: what a channel remembers of its commands and measurements. The samples of
 // a ring lie in the state, those of all commands first; a ring of measurements has those of x, then those of x'.
 
-// What is between the command that is wanted and the one that acts: clamp(gain wanted + bias, low, high).
+// What is between the command that is demanded and the one that acts: clamp(gain demanded + bias, low, high), where
+// what is within the dead zone, if there is one, gives nothing.
 struct Actuator {
     gain: f32,
     bias: f32,
     low: f32,
     high: f32,
+    dead_zone: f32,
 }
 
 // What a ring plays in this step: whether it does (1 or 0), and the past at the step's start and at its end. Commands
@@ -27,7 +29,16 @@ var<private> pasts: array<Past, max(N_COMMAND_RINGS + N_SENSOR_RINGS, 1u)>;
 
 // The command that acts on the channel.
 fn actuator_command(sent: f32) -> f32 {
-    return clamp(fma(sent, actuator.gain, actuator.bias), actuator.low, actuator.high);
+    var arrived = fma(sent, actuator.gain, actuator.bias);
+    if N_DEAD_ZONES > 0u {
+        arrived = beyond_dead_zone(arrived, actuator.dead_zone);
+    }
+    return clamp(arrived, actuator.low, actuator.high);
+}
+
+// What of a command goes beyond a dead zone of this half width.
+fn beyond_dead_zone(command: f32, half_width: f32) -> f32 {
+    return command - clamp(command, -half_width, half_width);
 }
 
 // Finds out whether the past is played in a step, and what it is at the step's start.

@@ -24,6 +24,8 @@ var<private> command_gain: f32;
 var<private> command_bias: f32;
 // By how much the acting command may change in a step.
 var<private> slew: f32;
+// Up to which size the command gives nothing.
+var<private> dead_zone: f32;
 // Whether the link brings no new command (1 or 0).
 var<private> blocked: f32;
 // By what share x and x' are measured too large in this step.
@@ -47,7 +49,7 @@ var<private> sensor_fault: f32;
 fn exogenous_inputs_begin(step: u32) {
     constant = drawn_number(CONSTANT);
     ground = drawn_number(GROUND);
-    actuator = Actuator(1.0, 0.0, -MAX, MAX);
+    actuator = Actuator(1.0, 0.0, -MAX, MAX, 0.0);
     for (var k = 0u; k < N_WAVES; k++) {
         let word = WAVES + 3u * k;
         let advance = drawn(word + 2u);
@@ -117,6 +119,12 @@ fn hold_command(step: u32, team: f32) {
         limit = lane_select_le(0.5, weight, lane_min(window_value(RATE_LIMITS + k), limit), limit);
     }
     slew = limit;
+    // Two zones, one after the other, are one as wide as both.
+    var zone = 0.0;
+    for (var k = 0u; k < N_DEAD_ZONES; k++) {
+        zone = zone + window_at(DEAD_ZONES + k, step);
+    }
+    dead_zone = zone;
     var blocks = 0.0;
     for (var k = 0u; k < N_COMMAND_HOLDS; k++) {
         blocks = lane_max(blocks, intermittent_window_at(COMMAND_HOLDS + k, step).x);
@@ -167,6 +175,9 @@ fn exogenous_inputs_evaluate(step: u32, moment: u32) {
     if !advance || N_COMMAND_WAVES > 0u || CARRIES {
         actuator.gain = command_gain;
         actuator.bias = command_bias;
+    }
+    if N_DEAD_ZONES > 0u {
+        actuator.dead_zone = dead_zone;
     }
     for (var k = SINES; k < SINES + N_SINES; k++) {
         let sine = oscillation_turned(k - SINES, advance);

@@ -48,7 +48,7 @@ fn reference(stage: u32, row: vec4<f32>) -> vec2<f32> {
 }
 
 // Shows the other channels of the group what they need of this one. Under thrust, a channel of translation shows
-// [x, demand, and what is between wanted and acting command].
+// [x, demand, and what is between demanded and acting command].
 fn publish_channel(stage: u32, inputs: Inputs) {
     publish(stage, POSITION, inputs.position);
     if PLANT == ATTITUDE {
@@ -61,6 +61,9 @@ fn publish_channel(stage: u32, inputs: Inputs) {
             publish(stage, COMMAND_GAIN, actuator.gain);
             publish(stage, COMMAND_LOW, actuator.low);
             publish(stage, COMMAND_HIGH, actuator.high);
+            if N_DEAD_ZONES > 0u {
+                publish(stage, COMMAND_DEAD_ZONE, actuator.dead_zone);
+            }
         } else {
             let r = reference(stage, inputs.reference.row);
             publish(stage, VELOCITY, inputs.velocity);
@@ -152,8 +155,11 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
         let applied_feedback = fma(thrust, commanded_axis[own.channel], -inputs.reference.row.w) * uniforms.plant.inverse_mass;
 
         // What the faults leave of the thrust acts along the true body axis.
-        let unlimited = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
-        let applied = clamp(unlimited, seen(stage, COMMAND_LOW, 2u), seen(stage, COMMAND_HIGH, 2u));
+        var arrived = fma(thrust, seen(stage, COMMAND_GAIN, 2u), seen(stage, COMMAND_BIAS, 2u));
+        if N_DEAD_ZONES > 0u {
+            arrived = beyond_dead_zone(arrived, seen(stage, COMMAND_DEAD_ZONE, 2u));
+        }
+        let applied = clamp(arrived, seen(stage, COMMAND_LOW, 2u), seen(stage, COMMAND_HIGH, 2u));
         let demand = seen(stage, DEMAND, own.channel);
         let sent = select(demand, thrust, own.channel == 2u);
         let command = fma(demand, actuator.gain, actuator.bias);

@@ -206,6 +206,7 @@ pub(crate) const LOST_SHARE: Parameter = required("magnitude", Bounds::Share);
 /// Share by which a property of the plant grows; less than all of it may be lost.
 pub(crate) const GROWTH: Parameter = of_agent("magnitude", Bounds::AtLeast(-0.9));
 pub(crate) const PAYLOAD_MASS: Parameter = of_agent("mass_kg", Bounds::NonNegative);
+pub(crate) const HALF_WIDTH: Parameter = required("magnitude", Bounds::NonNegative);
 pub(crate) const LARGEST_RATE: Parameter = required("rate", Bounds::NonNegative);
 pub(crate) const DRIFT_RATE: Parameter = required("rate", Bounds::Any);
 pub(crate) const STD: Parameter = required("std", Bounds::NonNegative);
@@ -293,6 +294,14 @@ kinds! {
         strikes: &[Actuator],
         parameters: &[LARGEST_RATE],
         can_ramp: false,
+        is_smooth: false,
+    }
+    /// Actuator: of what its other faults leave of the command, up to `magnitude` to either side gives nothing, and
+    /// beyond it the rest acts.
+    DeadZone, "dead-zone" {
+        strikes: &[Actuator],
+        parameters: &[HALF_WIDTH],
+        can_ramp: true,
         is_smooth: false,
     }
     /// Actuator, sensor or network: the command, or x and x' without f2, arrives `delay_s` later.

@@ -42,6 +42,18 @@ pub(super) const OF_SIGNALS: &[Control] = &[
     ),
     control(
         "delay_line",
+        "command - clamp(command, -half_width, half_width)",
+        "command - clamp(command, -half_width, 0.0)",
+        "actuator_command",
+    ),
+    control(
+        "exogenous",
+        "zone = zone + window_at",
+        "zone = window_at",
+        "exogenous_inputs_hold",
+    ),
+    control(
+        "delay_line",
         "if step > 0u {",
         "if step > 7u {",
         "delay_line_hold",

@@ -44,7 +44,7 @@ const LOOPS: &[(&str, usize)] = &[
     ("exogenous_inputs_hold", 4),
     ("exogenous_inputs_remember", 1),
     ("finish", 3),
-    ("hold_command", 8),
+    ("hold_command", 9),
     ("hold_sensor", 6),
     ("measure", 1),
     ("next_change", 1),

@@ -77,7 +77,7 @@ fn load() {
     scale = taken_number(46u);
     frozen = taken_number(47u);
     inverse_inertia = taken_number(48u);
-    actuator = Actuator(taken_number(49u), taken_number(50u), taken_number(51u), taken_number(52u));
+    actuator = Actuator(taken_number(49u), taken_number(50u), taken_number(51u), taken_number(52u), taken_number(61u));
     last_command = taken_number(53u);
     own.held_feedback = taken_number(54u);
     slew = taken_number(55u);
@@ -85,8 +85,9 @@ fn load() {
     last_sent = taken_number(57u);
     last_arrived = taken_number(58u);
     last_measured = vec2(taken_number(59u), taken_number(60u));
-    load_metrics(61u);
-    var at = 61u + N_EXTREMES + N_SUMS;
+    dead_zone = taken_number(62u);
+    load_metrics(63u);
+    var at = 63u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         waves[k].phase = taken(at);
         waves[k].held = taken_number(at + 1u);
@@ -138,8 +139,10 @@ fn leave() {
     give_number(58u, last_arrived);
     give_number(59u, last_measured.x);
     give_number(60u, last_measured.y);
-    leave_metrics(61u);
-    var at = 61u + N_EXTREMES + N_SUMS;
+    give_number(61u, actuator.dead_zone);
+    give_number(62u, dead_zone);
+    leave_metrics(63u);
+    var at = 63u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         give(at, waves[k].phase);
         give_number(at + 1u, waves[k].held);

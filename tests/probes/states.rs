@@ -192,6 +192,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         signals.lists.command_biases = random.plain("command_biases", -0.5, 0.5);
         signals.lists.leaks = random.plain("leaks", 0.0, 0.3);
         signals.lists.rate_limits = random.plain("rate_limits", 0.0, 0.5);
+        signals.lists.dead_zones = random.plain("dead_zones", 0.0, 0.5);
         signals.lists.scales = random.plain("scales", -0.3, 0.3);
         signals.lists.sensor_biases = random.plain("sensor_biases", -0.5, 0.5);
         signals.lists.inertias = random.plain("inertias", 0.0, 0.5);
@@ -305,6 +306,10 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
         *held = held.map(|_| some(1.0));
     }
     signals.slew = signals.slew.map(|_| some(0.5).abs());
+    signals.dead_zone = signals.dead_zone.map(|_| some(0.5).abs());
+    if !signals.lists.dead_zones.is_empty() {
+        signals.actuator.dead_zone = Some(signals.dead_zone.map(|_| some(0.5).abs()));
+    }
     signals.last_measured = signals.last_measured.map(|last| last.map(|_| some(1.0)));
     signals.inverse_inertia = signals
         .inverse_inertia

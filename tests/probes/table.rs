@@ -231,7 +231,7 @@ pub(super) const MEMORY: &[Probe] = &[
     ),
     probe!(
         "actuator_command",
-        ["actuator_command"],
+        ["actuator_command", "beyond_dead_zone"],
         over_shapes!(windows::actuators)
     ),
     probe!(

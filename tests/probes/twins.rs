@@ -136,6 +136,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         include_str!("../../src/model/exogenous/delay_line.rs"),
         &[
             ("command", "actuator_command"),
+            ("beyond_dead_zone", "beyond_dead_zone"),
             ("hold", "delay_line_hold"),
             ("recall", "delay_line_recall"),
             ("or_past", "delay_line_or_past"),

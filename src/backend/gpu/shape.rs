@@ -91,7 +91,8 @@ impl Shape {
             PlantKind::Axis | PlantKind::Translation => 1,
             PlantKind::Attitude => 2,
             PlantKind::Leg => 4,
-            PlantKind::Thrust => 6,
+            // One of them only with dead zones.
+            PlantKind::Thrust => 6 + usize::from(self.lists.count("dead_zones") > 0),
         }
     }
 

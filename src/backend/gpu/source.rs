@@ -129,6 +129,7 @@ impl Shape {
             ("TORQUE", 3),
             ("COMMAND_LOW", 4),
             ("COMMAND_HIGH", 5),
+            ("COMMAND_DEAD_ZONE", 6),
         ] {
             text.count(name, slot);
         }

@@ -105,9 +105,9 @@ table_and_block! {
         ramp_s: Option<Value>,
     }
     parameters {
-        /// Loss: lost share of the command; bias, hard-over, false data: N or N m of a command, m/s or rad/s of a
-        /// measurement (which shows the rate too large by it, and a UAV's position by a tenth as many m or rad); scale,
-        /// mass, inertia: share; interference: share of the others' commands.
+        /// Loss: lost share of the command; dead zone: half its width, N or N m; bias, hard-over, false data: N or N m
+        /// of a command, m/s or rad/s of a measurement (which shows the rate too large by it, and a UAV's position by a
+        /// tenth as many m or rad); scale, mass, inertia: share; interference: share of the others' commands.
         magnitude,
         /// Smoothed square, oscillatory, outlier: amplitude, N or N m of a command, m/s or rad/s of a measurement.
         amplitude,

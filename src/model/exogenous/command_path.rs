@@ -3,8 +3,8 @@
 //! 1. The controller computes what it wants. A sampled one does so at its ticks, and sends the same from one to the
 //!    next.
 //! 2. The link carries what is sent: it delays and replays it, and where it is blocked, what arrived last stays.
-//! 3. The actuator makes of what arrives what acts, anew at every stage: losses, what is added, hard-over; at last, the
-//!    acting command changes from step to step by no more than its rate, and by nothing where it is stuck.
+//! 3. The actuator makes of what arrives what acts, anew at every stage: losses, what is added, hard-over, dead zone;
+//!    at last, the acting command changes from step to step by no more than its rate, and by nothing where it is stuck.
 //!
 //! So only the limits of rate remember what acted; all else that is held lies before the actuator.
 
@@ -60,6 +60,12 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             );
         }
         self.slew[c] = slew;
+        // Two zones, one after the other, are one as wide as both.
+        let mut dead_zone = zero;
+        for zone in &self.lists.dead_zones {
+            dead_zone = dead_zone + zone[c].at(now);
+        }
+        self.dead_zone[c] = dead_zone;
         let mut blocked = zero;
         for hold in &self.lists.command_holds {
             let [holds, _] = hold.at(c, step, seed, episodes);

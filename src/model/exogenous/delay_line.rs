@@ -42,13 +42,15 @@ pub(crate) enum Moment {
     End,
 }
 
-/// What is between the command that is wanted and the one that acts: clamp(gain wanted + bias, low, high).
+/// What is between the command that is demanded and the one that acts: clamp(gain demanded + bias, low, high), where
+/// what is within the dead zone, if there is one, gives nothing.
 #[derive(Clone)]
 pub(crate) struct Actuator<L, const NC: usize> {
     pub(crate) gain: [L; NC],
     pub(crate) bias: [L; NC],
     pub(crate) low: [L; NC],
     pub(crate) high: [L; NC],
+    pub(crate) dead_zone: Option<[L; NC]>,
 }
 
 impl<L: Lane, const NC: usize> Actuator<L, NC> {
@@ -61,18 +63,25 @@ impl<L: Lane, const NC: usize> Actuator<L, NC> {
             bias: [zero; NC],
             low: [-far; NC],
             high: [far; NC],
+            dead_zone: None,
         }
     }
 
     /// The command that acts on a channel.
     #[inline(always)]
     pub(crate) fn command(&self, c: usize, sent: L) -> L {
-        clamp(
-            sent.mul_add(self.gain[c], self.bias[c]),
-            self.low[c],
-            self.high[c],
-        )
+        let mut arrived = sent.mul_add(self.gain[c], self.bias[c]);
+        if let Some(dead_zone) = &self.dead_zone {
+            arrived = beyond_dead_zone(arrived, dead_zone[c]);
+        }
+        clamp(arrived, self.low[c], self.high[c])
     }
+}
+
+/// What of a command goes beyond a dead zone of this half width.
+#[inline(always)]
+pub(crate) fn beyond_dead_zone<L: Lane>(command: L, half_width: L) -> L {
+    command - clamp(command, -half_width, half_width)
 }
 
 impl<L: Lane, const NC: usize, const NV: usize> DelayLine<L, NC, NV> {

@@ -103,6 +103,9 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             self.actuator.gain = self.command_gain;
             self.actuator.bias = self.command_bias;
         }
+        if !self.lists.dead_zones.is_empty() {
+            self.actuator.dead_zone = Some(self.dead_zone);
+        }
         for sines in &mut self.lists.sines {
             for c in 0..NC {
                 let sine = turned(&mut sines[c], advance);

@@ -30,6 +30,8 @@ pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
     pub(crate) command_bias: [L; NC],
     /// By how much the acting command may change in a step.
     pub(crate) slew: [L; NC],
+    /// Up to which size the command gives nothing.
+    pub(crate) dead_zone: [L; NC],
     /// Whether the link brings no new command (1 or 0).
     pub(crate) blocked: [L; NC],
     /// By what share x and x' are measured too large in this step.
@@ -70,6 +72,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             command_gain: one,
             command_bias: zero,
             slew: [L::splat(L::Real::MAX); NC],
+            dead_zone: zero,
             blocked: zero,
             scale: zero,
             frozen: zero,

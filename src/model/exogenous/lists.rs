@@ -124,6 +124,8 @@ signal_lists! {
     leaks: [Window<L>; NC],
     /// Largest changes of the command per step.
     rate_limits: [Window<L>; NC],
+    /// Sizes up to which a command gives nothing.
+    dead_zones: [Window<L>; NC],
     /// By what share x and x' are measured too large.
     scales: [Window<L>; NC],
     sensor_biases: [Window<L>; NC],

@@ -3,8 +3,9 @@
 use super::block::{LaneBlock, Selection, small};
 use crate::agent::{Agent, FIRST_ATTITUDE, Uav};
 use crate::campaign::kinds::{
-    AMPLITUDE, DELAY, DRIFT_RATE, FREQUENCY, GROWTH, LARGEST_RATE, LOST_SHARE, MAGNITUDE, OFFSET_X,
-    OFFSET_Y, PAYLOAD_MASS, PERIOD, PHASE, SHARE, SLOT, SMOOTHING, STD, WINDOW,
+    AMPLITUDE, DELAY, DRIFT_RATE, FREQUENCY, GROWTH, HALF_WIDTH, LARGEST_RATE, LOST_SHARE,
+    MAGNITUDE, OFFSET_X, OFFSET_Y, PAYLOAD_MASS, PERIOD, PHASE, SHARE, SLOT, SMOOTHING, STD,
+    WINDOW,
 };
 use crate::campaign::{Fault, FaultChannels, FaultKind, FaultTarget, Link, Parameter};
 use crate::draw::{AgentDraw, FaultDraw, member};
@@ -79,6 +80,7 @@ impl FaultLanes<'_> {
                 let limit = |c| values(&LARGEST_RATE, c).map(|rate| rate * step_s);
                 lists.rate_limits.push(self.switches(&limit));
             }
+            FaultKind::DeadZone => lists.dead_zones.push(windows(&HALF_WIDTH)),
             FaultKind::Oscillatory => {
                 let waves = self.waves(&|c| values(&FREQUENCY, c).map(|w| w / TAU), None);
                 match fault.link {

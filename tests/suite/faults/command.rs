@@ -90,6 +90,18 @@ fn val_an_oscillation_is_added() {
 }
 
 #[test]
+fn val_a_dead_zone_lets_act_what_goes_beyond_it() {
+    let fault = actuator("dead-zone", "magnitude = 4.0");
+    holds(&fault, |_, wanted| {
+        wanted.signum() * (wanted.abs() - 4.0).max(0.0)
+    });
+    let simulated = of_x(&fault);
+    let nothing = simulated[ONSET..].iter().filter(|shown| shown.u == 0.0);
+    let some = simulated[ONSET..].iter().filter(|shown| shown.u != 0.0);
+    assert!(nothing.count() > 20 && some.count() > 20);
+}
+
+#[test]
 fn val_a_stuck_actuator_stays_where_it_was() {
     let simulated = of_x(&actuator("stuck", "duration_s = 0.1"));
     for step in ONSET..ONSET + 50 {

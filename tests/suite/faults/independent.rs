@@ -13,6 +13,8 @@ const STEPS: usize = 500;
 struct Between {
     /// Largest change of the command, N/s.
     rate_n_s: Option<f64>,
+    /// Up to which size the command gives nothing, N.
+    dead_zone_n: Option<f64>,
     /// Steps by which the command is late, and since when.
     command_late: Option<(usize, usize)>,
     /// Steps by which the measurement is late.
@@ -103,6 +105,11 @@ impl Between {
             && (from..until).contains(&step)
         {
             u = 0.0;
+        }
+        if let Some(dead_zone_n) = self.dead_zone_n
+            && step >= ONSET
+        {
+            u = u.signum() * (u.abs() - dead_zone_n).max(0.0);
         }
         if let Some(rate_n_s) = self.rate_n_s
             && step >= ONSET
@@ -277,6 +284,29 @@ fn val_a_limited_rate_holds_within_the_step() {
             ..Between::default()
         },
     );
+}
+
+#[test]
+fn val_a_dead_zone_takes_its_width_from_the_command_ahead_of_the_rate_limit() {
+    let zone = fault("actuator", "dead-zone", "magnitude = 2.0");
+    let between = Between {
+        dead_zone_n: Some(2.0),
+        ..Between::default()
+    };
+    holds(&zone, between);
+    // Two in a row take the sum of their widths.
+    let wide = Between {
+        dead_zone_n: Some(3.5),
+        ..between
+    };
+    let both = fault("actuator", "dead-zone", "magnitude = 1.5") + &zone;
+    tells_apart(&both, wide, &[between]);
+    let limit = fault("actuator", "rate-limit", "rate = 20.0");
+    let limited = Between {
+        rate_n_s: Some(20.0),
+        ..between
+    };
+    tells_apart(&(limit + &zone), limited, &[between]);
 }
 
 #[test]
