@@ -1,16 +1,6 @@
 // Twin of src/model/exogenous/delay_line.rs: what a channel remembers of its commands and measurements. The samples of
 // a ring lie in the state, those of all commands first; a ring of measurements has those of x, then those of x'.
 
-// What is between the command that is demanded and the one that acts: clamp(gain demanded + bias, low, high), where
-// what is within the dead zone, if there is one, gives nothing.
-struct Actuator {
-    gain: f32,
-    bias: f32,
-    low: f32,
-    high: f32,
-    dead_zone: f32,
-}
-
 // What a ring plays in this step: whether it does (1 or 0), and the past at the step's start and at its end. Commands
 // use the first number only.
 struct Past {
@@ -23,23 +13,8 @@ const START = 0u;
 const MIDDLE = 1u;
 const END = 2u;
 
-var<private> actuator: Actuator;
 // Those of commands, then those of measurements.
 var<private> pasts: array<Past, max(N_COMMAND_RINGS + N_SENSOR_RINGS, 1u)>;
-
-// The command that acts on the channel.
-fn actuator_command(sent: f32) -> f32 {
-    var arrived = fma(sent, actuator.gain, actuator.bias);
-    if N_DEAD_ZONES > 0u {
-        arrived = beyond_dead_zone(arrived, actuator.dead_zone);
-    }
-    return clamp(arrived, actuator.low, actuator.high);
-}
-
-// What of a command goes beyond a dead zone of this half width.
-fn beyond_dead_zone(command: f32, half_width: f32) -> f32 {
-    return command - clamp(command, -half_width, half_width);
-}
 
 // Finds out whether the past is played in a step, and what it is at the step's start.
 fn delay_line_hold(ring: u32, step: u32) {

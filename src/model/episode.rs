@@ -11,13 +11,10 @@ use super::inputs::{ChannelInputs, LaneBlock, Selection, changes};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::plant::Plant;
-use super::plant::biped::LegPlant;
-use super::plant::uav::{Attitude, Axis, Thrust, Translation};
+use super::plant::kinds::AnyPlant;
 use super::sample::{ChannelSample, ObserverState};
-use super::subsystem::parts;
-pub(crate) use super::subsystem::{PlantKind, Subsystem};
+use super::subsystem::{Subsystem, parts};
 use super::team::{Advance, Ending, Show, TeamState};
-use crate::agent::robot::LEG_JOINTS;
 use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
 use crate::synthesis::LoopGains;
@@ -200,26 +197,13 @@ struct EpisodeLoop<'a, R> {
 
 impl<R: Real> EpisodeLoop<'_, R> {
     fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Subsystem<R>) {
-        let (campaign, first) = (&self.model.campaign, part.channels.start);
-        match &campaign.agent {
-            crate::agent::Agent::Uav(uav) => match part.plant {
-                PlantKind::Axis => self.group::<L, _, 1, NS, 0>(Axis::new(uav, first), part),
-                PlantKind::Translation => {
-                    self.group::<L, _, 3, NS, 0>(Translation::new(uav), part);
-                }
-                PlantKind::Attitude => self.group::<L, _, 3, NS, 0>(Attitude::new(uav), part),
-                PlantKind::Thrust | PlantKind::Leg => {
-                    self.group::<L, _, 6, NS, 4>(Thrust::new(uav), part)
-                }
-            },
-            crate::agent::Agent::Biped(biped) => {
-                let (robot, side) = (&biped.robot, first / LEG_JOINTS);
-                if campaign.is_limited() {
-                    self.group::<L, _, 6, NS, 0>(LegPlant::<R, true>::new(robot, side), part);
-                } else {
-                    self.group::<L, _, 6, NS, 0>(LegPlant::<R, false>::new(robot, side), part);
-                }
-            }
+        match part.plant {
+            AnyPlant::Axis(plant) => self.group::<L, _, 1, NS, 0>(plant, part),
+            AnyPlant::Translation(plant) => self.group::<L, _, 3, NS, 0>(plant, part),
+            AnyPlant::Attitude(plant) => self.group::<L, _, 3, NS, 0>(plant, part),
+            AnyPlant::Thrust(plant) => self.group::<L, _, 6, NS, 4>(plant, part),
+            AnyPlant::FreeLeg(plant) => self.group::<L, _, 6, NS, 0>(plant, part),
+            AnyPlant::CutLeg(plant) => self.group::<L, _, 6, NS, 0>(plant, part),
         }
     }
 

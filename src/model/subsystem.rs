@@ -2,8 +2,9 @@
 
 use super::lanes::Real;
 use super::plant::ReferenceRow;
-use super::plant::biped::leg_rows;
-use super::plant::uav::{inertia, non_inertial};
+use super::plant::biped::{LegPlant, leg_rows};
+use super::plant::kinds::AnyPlant;
+use super::plant::uav::{Attitude, Axis, Thrust, Translation, inertia, non_inertial};
 use crate::agent::robot::dynamics::{inverse_dynamics, mass_matrix};
 use crate::agent::robot::{JOINTS, LEG_JOINTS, Robot};
 use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE, Uav};
@@ -13,24 +14,9 @@ use nalgebra::{Cholesky, Matrix6, Vector6};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What holds a group of channels together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PlantKind {
-    /// One axis of translation, fully actuated.
-    Axis,
-    /// All three of them, where rotor vortices make distances matter.
-    Translation,
-    /// The attitude, fully actuated.
-    Attitude,
-    /// All channels of a UAV, with thrust along the body axis.
-    Thrust,
-    /// A leg of a biped.
-    Leg,
-}
-
 /// A group of channels and its reference table, `[half step][agent][channel][row]`.
 pub(crate) struct Subsystem<R> {
-    pub(crate) plant: PlantKind,
+    pub(crate) plant: AnyPlant<R>,
     pub(crate) channels: Range<usize>,
     /// Rows of each channel.
     pub(crate) rows: usize,
@@ -41,9 +27,11 @@ pub(crate) struct Subsystem<R> {
 pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Subsystem<R>> {
     let (plants, rows) = match &campaign.agent {
         Agent::Uav(uav) => (uav_plants(uav, campaign.has_vortices()), 1),
-        Agent::Biped(_) => {
-            let legs = [0..LEG_JOINTS, LEG_JOINTS..JOINTS].map(|joints| (PlantKind::Leg, joints));
-            (legs.to_vec(), leg_rows(campaign.is_limited()))
+        Agent::Biped(biped) => {
+            let cut = campaign.is_limited();
+            let legs = [0..LEG_JOINTS, LEG_JOINTS..JOINTS].into_iter().enumerate();
+            let legs = legs.map(|(side, joints)| (leg_plant(&biped.robot, side, cut), joints));
+            (legs.collect(), leg_rows(cut))
         }
     };
     let half_steps = (0..=2 * campaign.time.steps).into_par_iter();
@@ -53,7 +41,7 @@ pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Subsystem<R>> {
             (0..campaign.team).map(move |agent| agent_rows(campaign, agent, t_s))
         })
         .collect();
-    let part = |(plant, channels): (PlantKind, Range<usize>)| {
+    let part = |(plant, channels): (AnyPlant<R>, Range<usize>)| {
         let own = rows * channels.start..rows * channels.end;
         Subsystem {
             plant,
@@ -69,19 +57,29 @@ pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Subsystem<R>> {
     plants.into_iter().map(part).collect()
 }
 
-fn uav_plants(uav: &Uav, vortices: bool) -> Vec<(PlantKind, Range<usize>)> {
+fn uav_plants<R: Real>(uav: &Uav, vortices: bool) -> Vec<(AnyPlant<R>, Range<usize>)> {
+    let attitude = (AnyPlant::Attitude(Attitude::new(uav)), FIRST_ATTITUDE..6);
     match uav.actuation {
-        ActuationKind::Thrust => vec![(PlantKind::Thrust, 0..6)],
+        ActuationKind::Thrust => vec![(AnyPlant::Thrust(Thrust::new(uav)), 0..6)],
         ActuationKind::Full | ActuationKind::Limited if vortices => vec![
-            (PlantKind::Translation, 0..FIRST_ATTITUDE),
-            (PlantKind::Attitude, FIRST_ATTITUDE..6),
+            (
+                AnyPlant::Translation(Translation::new(uav)),
+                0..FIRST_ATTITUDE,
+            ),
+            attitude,
         ],
-        ActuationKind::Full | ActuationKind::Limited => vec![
-            (PlantKind::Axis, 0..1),
-            (PlantKind::Axis, 1..2),
-            (PlantKind::Axis, 2..FIRST_ATTITUDE),
-            (PlantKind::Attitude, FIRST_ATTITUDE..6),
-        ],
+        ActuationKind::Full | ActuationKind::Limited => {
+            let axis = |axis| (AnyPlant::Axis(Axis::new(uav, axis)), axis..axis + 1);
+            (0..FIRST_ATTITUDE).map(axis).chain([attitude]).collect()
+        }
+    }
+}
+
+fn leg_plant<R: Real>(robot: &Robot, side: usize, cut: bool) -> AnyPlant<R> {
+    if cut {
+        AnyPlant::CutLeg(LegPlant::new(robot, side))
+    } else {
+        AnyPlant::FreeLeg(LegPlant::new(robot, side))
     }
 }
 

@@ -7,9 +7,9 @@ use super::team::held_next;
 use super::tracked::Tracked;
 use super::world::{Flies, World};
 use crate::backend::gpu::uniforms::{LegPlantUniforms, UavUniforms};
-use crate::model::episode::PlantKind;
 use crate::model::exogenous::ExogenousInputs;
-use crate::model::exogenous::delay_line::Actuator;
+use crate::model::exogenous::actuator::Actuator;
+use crate::model::plant::kinds::PlantKind;
 
 /// Who an invocation is, and its words of the buffers.
 pub(super) fn identified<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize>(

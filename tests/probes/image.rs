@@ -59,8 +59,8 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     for held in [
         signals.disturbance,
         signals.sensor_fault,
-        signals.command_gain,
-        signals.command_bias,
+        signals.command.gain,
+        signals.command.bias,
         signals.held_sensor,
     ] {
         words.push(Near(held[c]));
@@ -79,8 +79,8 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
         signals.actuator.high,
         signals.last_command,
         agent.held_feedback,
-        signals.slew,
-        signals.blocked,
+        signals.command.slew,
+        signals.command.blocked,
         signals.last_sent,
         signals.last_arrived,
     ] {
@@ -89,7 +89,7 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words.extend(signals.last_measured[c].map(Near));
     let acting = signals.actuator.dead_zone;
     words.push(Near(acting.map_or(Tracked::exact(0.0), |zone| zone[c])));
-    words.push(Near(signals.dead_zone[c]));
+    words.push(Near(signals.command.dead_zone[c]));
     words.extend(metrics.largest.numbers().into_iter().map(Near));
     words.extend(metrics.recent.numbers().into_iter().map(Near));
     let none = Tracked::exact(0.0);

@@ -14,10 +14,12 @@ use crate::campaign::Campaign;
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
-use crate::model::episode::{Controller, ControllerKind, Model, PlantKind};
+use crate::model::episode::{Controller, ControllerKind, Model};
+use crate::model::exogenous::lists::LISTS;
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
 use crate::model::metric::{Extremes, Sums};
+use crate::model::plant::kinds::PlantKind;
 use crate::model::plant::leg::LegUniforms;
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
 use crate::random::philox::{self, Stream};
@@ -64,7 +66,9 @@ macro_rules! offsets {
 #[test]
 fn val_every_shape_is_valid_wgsl() {
     let shapes = shapes::validated();
-    assert_eq!(shapes.len(), 750);
+    // Each list alone, turbulence, jets, nothing and all; teams, and controllers.
+    let counts = LISTS.len() + 4;
+    assert_eq!(shapes.len(), counts * PlantKind::ALL.len() * 3 * 2);
     for shape in shapes.iter().chain(&shapes::probed()) {
         let module = module(shape);
         let entries: Vec<&str> = module
@@ -176,7 +180,9 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
         let model: Model<f32> = Model::new(&campaign);
         for part in &model.parts {
             let mut shapes = shapes::validated().into_iter();
-            let shape = shapes.find(|shape| shape.plant == part.plant).unwrap();
+            let shape = shapes
+                .find(|shape| shape.plant == part.plant.kind())
+                .unwrap();
             let (_, span) = layout(&module(&shape), "Uniforms");
             assert_eq!(setting(&campaign, part, &controller).len(), span);
             plants += 1;

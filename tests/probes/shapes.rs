@@ -2,12 +2,12 @@
 
 use crate::agent::robot::Robot;
 use crate::agent::{ActuationKind, Uav};
-use crate::backend::gpu::shape::{PLANTS, Shape};
+use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::signals::Lists;
 use crate::model::agent::Coupling;
-use crate::model::episode::PlantKind;
 use crate::model::exogenous::lists::{LISTS, ListShape, SignalLists};
 use crate::model::plant::biped::LegPlant;
+use crate::model::plant::kinds::PlantKind;
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
 
@@ -135,11 +135,7 @@ fn lists((counts, turbulences, vortices): Counts) -> Lists {
 }
 
 fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts) -> Shape {
-    let channels = match plant {
-        PlantKind::Axis => 1,
-        PlantKind::Translation | PlantKind::Attitude => 3,
-        PlantKind::Thrust | PlantKind::Leg => 6,
-    };
+    let channels = plant.spec().channels;
     let vortices = match plant {
         PlantKind::Translation | PlantKind::Thrust => counts.2,
         PlantKind::Axis | PlantKind::Attitude | PlantKind::Leg => 0,
@@ -224,7 +220,7 @@ pub(super) fn validated() -> Vec<Shape> {
         .chain([turbulent, blown, NONE, ALL]);
     let mut shapes = Vec::new();
     for counts in counts {
-        for plant in PLANTS {
+        for plant in PlantKind::ALL {
             for (team, coupled) in [(1, false), (3, false), (3, true)] {
                 for ftc in [false, true] {
                     shapes.push(shape(plant, team, ftc, coupled, counts));

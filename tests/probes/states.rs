@@ -292,8 +292,8 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
     for held in [
         &mut signals.held_disturbance,
         &mut signals.held_sensor,
-        &mut signals.command_gain,
-        &mut signals.command_bias,
+        &mut signals.command.gain,
+        &mut signals.command.bias,
         &mut signals.scale,
         &mut signals.last_sent,
         &mut signals.last_arrived,
@@ -305,10 +305,10 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
     ] {
         *held = held.map(|_| some(1.0));
     }
-    signals.slew = signals.slew.map(|_| some(0.5).abs());
-    signals.dead_zone = signals.dead_zone.map(|_| some(0.5).abs());
+    signals.command.slew = signals.command.slew.map(|_| some(0.5).abs());
+    signals.command.dead_zone = signals.command.dead_zone.map(|_| some(0.5).abs());
     if !signals.lists.dead_zones.is_empty() {
-        signals.actuator.dead_zone = Some(signals.dead_zone.map(|_| some(0.5).abs()));
+        signals.actuator.dead_zone = Some(signals.command.dead_zone.map(|_| some(0.5).abs()));
     }
     signals.last_measured = signals.last_measured.map(|last| last.map(|_| some(1.0)));
     signals.inverse_inertia = signals
@@ -328,7 +328,7 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
     }
     for c in 0..NC {
         signals.frozen[c] = Tracked::number(numbers.one_of(&[0.0, 1.0]));
-        signals.blocked[c] = Tracked::number(numbers.one_of(&[0.0, 1.0]));
+        signals.command.blocked[c] = Tracked::number(numbers.one_of(&[0.0, 1.0]));
         let far = f64::from(f32::MAX);
         let (low, high) = (numbers.between(-1.0, 0.0), numbers.between(0.0, 1.0));
         let [low, high] = numbers.one_of(&[[-far, far], [low, high], [low, low]]);

@@ -3,7 +3,7 @@
 use super::harness::{Compared, Lab};
 use super::world::World;
 use super::{buffers, exogenous, leg, loops, pure, shapes, team, vortex, windows};
-use crate::model::episode::PlantKind;
+use crate::model::plant::kinds::PlantKind;
 
 /// A probe of one or a few functions.
 pub(super) struct Probe {

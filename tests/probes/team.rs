@@ -9,7 +9,7 @@ use super::world::{Flies, Scene, World};
 use crate::backend::gpu::layout::NEVER;
 use crate::model::agent::{Agent, Coupling, Team};
 use crate::model::controller::fault_estimates;
-use crate::model::exogenous::delay_line::Actuator;
+use crate::model::exogenous::actuator::Actuator;
 use crate::model::plant::{ReferenceRow, Response};
 use crate::model::team::finite;
 

@@ -135,8 +135,6 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         "delay_line",
         include_str!("../../src/model/exogenous/delay_line.rs"),
         &[
-            ("command", "actuator_command"),
-            ("beyond_dead_zone", "beyond_dead_zone"),
             ("hold", "delay_line_hold"),
             ("recall", "delay_line_recall"),
             ("or_past", "delay_line_or_past"),
@@ -164,7 +162,6 @@ const TWINS: &[(&str, &str, Pairs)] = &[
             ("evaluate", "exogenous_inputs_evaluate"),
             ("measure", "measure"),
             ("remember", "exogenous_inputs_remember"),
-            ("turned", "oscillation_turned"),
         ],
     ),
     (
@@ -173,10 +170,24 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         &[("ticks", "exogenous_inputs_ticks")],
     ),
     (
+        "actuator",
+        include_str!("../../src/model/exogenous/actuator.rs"),
+        &[
+            ("command", "actuator_command"),
+            ("beyond_dead_zone", "beyond_dead_zone"),
+        ],
+    ),
+    (
+        "lists",
+        include_str!("../../src/model/exogenous/lists.rs"),
+        &[("turned", "oscillation_turned")],
+    ),
+    (
         "command_path",
         include_str!("../../src/model/exogenous/command_path.rs"),
         &[
             ("hold_command", "hold_command"),
+            ("evaluate_command", "evaluate_command"),
             ("carry_command", "carry_command"),
             ("limit_rate", "limit_rate"),
             ("remember_command", "remember_command"),
@@ -256,6 +267,10 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
             "first_lane",
         ],
         "lanes alone",
+    ),
+    (
+        &["window", "item", "items", "counts", "waves_mut"],
+        "lists are constants in the shaders",
     ),
     (&["turns_add"], "the addition of u32"),
     (
@@ -379,7 +394,7 @@ fn flat(listed: &[(&[&'static str], &str)]) -> BTreeSet<&'static str> {
 
 /// Names of the functions that a Rust file defines ahead of its tests.
 fn defined(text: &str) -> BTreeSet<&str> {
-    let text = text.split("#[cfg(test)]").next().unwrap();
+    let text = text.split("#[cfg(test)]\nmod ").next().unwrap();
     let words = text
         .lines()
         .filter_map(|line| line.trim().split_once("fn "));

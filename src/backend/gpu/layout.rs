@@ -5,13 +5,14 @@ use super::signals::Lists;
 use crate::campaign::{Campaign, Time};
 use crate::draw::Episode;
 use crate::model::ChannelSample;
-use crate::model::episode::{AgentOutcome, PlantKind};
+use crate::model::episode::AgentOutcome;
 use crate::model::exogenous::lists::{Item, LISTS, Oscillation};
 use crate::model::inputs::{ChannelInputs, LaneBlock, Selection};
 use crate::model::metric::{ChannelOutcome, Extremes, Metrics, Sums};
 use crate::model::team::Ending;
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Words of the metrics in an outcome: extremes, then sums.
 pub(crate) const N_EXTREMES: usize = Extremes::<f32>::NAMES.len();
@@ -163,12 +164,23 @@ pub(crate) struct Span {
     pub(crate) output_first: u32,
 }
 
+/// Calls a function with the number of a group's channels as its constant.
+macro_rules! with_channels {
+    ($channels:expr, $function:ident($($argument:expr),*)) => {
+        match $channels {
+            1 => $function::<1>($($argument),*),
+            3 => $function::<3>($($argument),*),
+            _ => $function::<6>($($argument),*),
+        }
+    };
+}
+
 /// The lists of a group's channels.
-pub(crate) fn lists<const NC: usize>(
-    campaign: &Campaign,
-    first: usize,
-    episode: &Episode,
-) -> Lists {
+pub(crate) fn lists(campaign: &Campaign, channels: Range<usize>, episode: &Episode) -> Lists {
+    with_channels!(channels.len(), lists_of(campaign, channels.start, episode))
+}
+
+fn lists_of<const NC: usize>(campaign: &Campaign, first: usize, episode: &Episode) -> Lists {
     let condition: ChannelInputs<f32, NC> = LaneBlock {
         campaign,
         episodes: std::slice::from_ref(episode),
@@ -211,13 +223,7 @@ pub(crate) fn draws(
     first: usize,
     episodes: &[Episode],
 ) -> Vec<u32> {
-    match shape.plant {
-        PlantKind::Axis => draws_of::<1>(campaign, shape, first, episodes),
-        PlantKind::Translation | PlantKind::Attitude => {
-            draws_of::<3>(campaign, shape, first, episodes)
-        }
-        PlantKind::Thrust | PlantKind::Leg => draws_of::<6>(campaign, shape, first, episodes),
-    }
+    with_channels!(shape.channels, draws_of(campaign, shape, first, episodes))
 }
 
 fn draws_of<const NC: usize>(

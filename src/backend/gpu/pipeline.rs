@@ -2,13 +2,12 @@
 
 use super::device::Gpu;
 use super::shape::Shape;
-use super::uniforms::leg;
+use super::uniforms::PlantUniforms;
 use super::{GpuError, layout};
-use crate::agent::Agent;
 use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::draw;
 use crate::model::agent::Coupling;
-use crate::model::episode::{PlantKind, Subsystem};
+use crate::model::subsystem::Subsystem;
 
 /// Invocations that a workgroup should have: several warps, and several workgroups on each multiprocessor.
 pub(super) const WORKGROUP: usize = 256;
@@ -83,24 +82,14 @@ pub(super) fn shape(
     part: &Subsystem<f32>,
     ftc: bool,
 ) -> Result<Shape, GpuError> {
-    let first = part.channels.start;
     let episode = draw(campaign, 0);
-    let lists = match part.plant {
-        PlantKind::Axis => layout::lists::<1>(campaign, first, &episode),
-        PlantKind::Translation | PlantKind::Attitude => {
-            layout::lists::<3>(campaign, first, &episode)
-        }
-        PlantKind::Thrust | PlantKind::Leg => layout::lists::<6>(campaign, first, &episode),
-    };
+    let lists = layout::lists(campaign, part.channels.clone(), &episode);
     let limits = gpu.limits();
     let mut shape = Shape {
-        plant: part.plant,
-        plant_constants: match &campaign.agent {
-            Agent::Uav(_) => Vec::new(),
-            Agent::Biped(biped) => leg(biped, part).model.shader_constants(),
-        },
+        plant: part.plant.kind(),
+        plant_constants: part.plant.constants(),
         cut: campaign.is_limited(),
-        channels: part.channels.len(),
+        channels: part.plant.kind().spec().channels,
         rows: part.rows,
         team: campaign.team,
         lanes: MAX_LANES,

@@ -3,19 +3,7 @@
 use super::signals::Lists;
 use crate::model::agent::Coupling;
 use crate::model::controller::FTC_STATES;
-use crate::model::episode::PlantKind;
-
-/// The plants, in their order.
-pub(crate) const PLANTS: [PlantKind; 5] = [
-    PlantKind::Axis,
-    PlantKind::Translation,
-    PlantKind::Attitude,
-    PlantKind::Thrust,
-    PlantKind::Leg,
-];
-
-/// States that the command filter adds to a channel under thrust: its angle and rate.
-pub(super) const FILTER_STATES: usize = 2;
+use crate::model::plant::kinds::PlantKind;
 
 /// What the text of a group's shader depends on.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,37 +51,24 @@ impl Shape {
 
     /// States that a channel has of its plant: under thrust, the command filter's angle and rate.
     pub(crate) fn extra_states(&self) -> usize {
-        match self.plant {
-            PlantKind::Thrust => FILTER_STATES,
-            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Leg => 0,
-        }
+        self.plant.spec().own_states
     }
 
     /// Whether the commands have limits, whose excess is counted.
     pub(crate) fn limited(&self) -> bool {
-        match self.plant {
-            PlantKind::Thrust | PlantKind::Leg => true,
-            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude => false,
-        }
+        self.plant.spec().limited
     }
 
     /// Kinds of channels, each with gains of its own.
     pub(crate) fn kinds(&self) -> usize {
-        match self.plant {
-            PlantKind::Thrust => 2,
-            PlantKind::Axis | PlantKind::Translation | PlantKind::Attitude | PlantKind::Leg => 1,
-        }
+        self.plant.spec().kinds
     }
 
     /// Numbers that a channel shows to others.
     pub(crate) fn shared(&self) -> usize {
-        match self.plant {
-            PlantKind::Axis | PlantKind::Translation => 1,
-            PlantKind::Attitude => 2,
-            PlantKind::Leg => 4,
-            // One of them only with dead zones.
-            PlantKind::Thrust => 6 + usize::from(self.lists.count("dead_zones") > 0),
-        }
+        // Under thrust, dead zones are shown too.
+        let dead_zones = self.plant == PlantKind::Thrust && self.lists.count("dead_zones") > 0;
+        self.plant.spec().shared + usize::from(dead_zones)
     }
 
     /// Numbers per invocation in workgroup memory; [`shaders/team.wgsl`] says why twice.

@@ -2,14 +2,14 @@
 //! `src/model`, so that every number and size exists once.
 
 use super::layout::{OUTCOME_WORDS, SHOWN_WORDS};
-use super::shape::{FILTER_STATES, PLANTS, Shape};
+use super::shape::Shape;
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
 use crate::model::controller::{FTC_STATES, OBSERVER};
-use crate::model::episode::PlantKind;
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
+use crate::model::plant::kinds::{FILTER_STATES, PlantKind};
 use crate::model::team::{FAR_AWAY, FLUSH_STEPS};
 use crate::random::philox::{self, Stream};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
@@ -32,10 +32,11 @@ const BIPED: [&str; 2] = [
     include_str!("../../../shaders/plant_biped.wgsl"),
 ];
 /// The files that build on a plant.
-const ABOVE: [&str; 8] = [
+const ABOVE: [&str; 9] = [
     include_str!("../../../shaders/window.wgsl"),
     include_str!("../../../shaders/delay_line.wgsl"),
     include_str!("../../../shaders/noise.wgsl"),
+    include_str!("../../../shaders/command_path.wgsl"),
     include_str!("../../../shaders/exogenous.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
     include_str!("../../../shaders/vortex.wgsl"),
@@ -72,13 +73,13 @@ impl Shape {
 
     /// What the group is.
     fn declare_group(&self, text: &mut Constants) {
-        for plant in PLANTS {
-            text.count(&format!("{plant:?}").to_uppercase(), plant as usize);
+        for plant in PlantKind::ALL {
+            text.count(plant.spec().name, plant as usize);
         }
         for (name, value) in &self.plant_constants {
             text.count(name, *value as usize);
         }
-        text.name("PLANT", &format!("{:?}", self.plant).to_uppercase());
+        text.name("PLANT", self.plant.spec().name);
         text.count("NC", self.channels);
         text.count("ROWS", self.rows);
         text.count("TEAM", self.team);

@@ -2,15 +2,17 @@
 //! shaders/episode.wgsl.
 
 use super::layout::word;
-use crate::agent::{Agent, Biped, HEIGHT};
+use crate::agent::HEIGHT;
 use crate::campaign::Campaign;
 use crate::model::controller::ChannelGains;
-use crate::model::episode::{Controller, PlantKind, Subsystem};
+use crate::model::episode::Controller;
 use crate::model::integrator::Step;
 use crate::model::metric::Limits;
 use crate::model::plant::biped::LegPlant;
+use crate::model::plant::kinds::AnyPlant;
 use crate::model::plant::leg::{LEG_JOINTS, LegUniforms};
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
+use crate::model::subsystem::Subsystem;
 use crate::random::philox::key;
 use bytemuck::{Pod, Zeroable};
 
@@ -115,6 +117,11 @@ impl From<Thrust<f32>> for UavUniforms {
 pub(crate) trait PlantUniforms {
     /// The bytes of `Plant` in the shaders.
     fn bytes(&self) -> Vec<u8>;
+
+    /// Constants of its own in the shaders' text, name and value.
+    fn constants(&self) -> Vec<(String, u32)> {
+        Vec::new()
+    }
 }
 
 impl PlantUniforms for Axis<f32> {
@@ -151,6 +158,33 @@ impl<const CUT: bool> PlantUniforms for LegPlant<f32, CUT> {
         };
         bytemuck::bytes_of(&words).to_vec()
     }
+
+    fn constants(&self) -> Vec<(String, u32)> {
+        self.model.shader_constants()
+    }
+}
+
+impl PlantUniforms for AnyPlant<f32> {
+    fn bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Axis(plant) => plant.bytes(),
+            Self::Translation(plant) => plant.bytes(),
+            Self::Attitude(plant) => plant.bytes(),
+            Self::Thrust(plant) => plant.bytes(),
+            Self::FreeLeg(plant) => plant.bytes(),
+            Self::CutLeg(plant) => plant.bytes(),
+        }
+    }
+
+    fn constants(&self) -> Vec<(String, u32)> {
+        match self {
+            Self::FreeLeg(plant) => plant.constants(),
+            Self::CutLeg(plant) => plant.constants(),
+            Self::Axis(_) | Self::Translation(_) | Self::Attitude(_) | Self::Thrust(_) => {
+                Vec::new()
+            }
+        }
+    }
 }
 
 impl From<&ChannelGains<f32>> for GainsUniforms {
@@ -178,15 +212,7 @@ pub(crate) fn setting(
         h: [h.sixth, h.third, h.half, h.whole],
     };
     let mut bytes = bytemuck::bytes_of(&head).to_vec();
-    bytes.extend(match &campaign.agent {
-        Agent::Uav(uav) => match part.plant {
-            PlantKind::Axis => Axis::new(uav, part.channels.start).bytes(),
-            PlantKind::Translation => Translation::new(uav).bytes(),
-            PlantKind::Attitude => Attitude::new(uav).bytes(),
-            PlantKind::Thrust | PlantKind::Leg => Thrust::new(uav).bytes(),
-        },
-        Agent::Biped(biped) => leg(biped, part).bytes(),
-    });
+    bytes.extend(part.plant.bytes());
     for channel in part.channels.clone() {
         let verdict = &campaign.verdict;
         let limits = Limits::<f32>::new(verdict.max_error[channel], verdict.settled_error[channel]);
@@ -207,9 +233,4 @@ pub(crate) fn setting(
         }
     }
     bytes
-}
-
-/// The leg that a part of a biped's episode is. Whether limits cut its commands is no matter of its constants.
-pub(crate) fn leg(biped: &Biped, part: &Subsystem<f32>) -> LegPlant<f32, false> {
-    LegPlant::new(&biped.robot, part.channels.start / LEG_JOINTS)
 }

@@ -1,6 +1,6 @@
 //! The way of a command from the controller to the plant.
 //!
-//! 1. The controller computes what it wants. A sampled one does so at its ticks, and sends the same from one to the
+//! 1. The controller computes its demand. A sampled one does so at its ticks, and sends the same from one to the
 //!    next.
 //! 2. The link carries what is sent: it delays and replays it, and where it is blocked, what arrived last stays.
 //! 3. The actuator makes of what arrives what acts, anew at every stage: losses, what is added, hard-over, dead zone;
@@ -10,6 +10,7 @@
 
 use super::delay_line::Moment;
 use super::inputs::ExogenousInputs;
+use super::lists::turned;
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
@@ -48,8 +49,8 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             gain = gain * left;
             bias = over[c].value.mul_add(weight, bias * left);
         }
-        self.command_gain[c] = gain;
-        self.command_bias[c] = bias;
+        self.command.gain[c] = gain;
+        self.command.bias[c] = bias;
         let mut slew = L::splat(L::Real::MAX);
         for limit in &self.lists.rate_limits {
             slew = L::select_le(
@@ -59,26 +60,50 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
                 slew,
             );
         }
-        self.slew[c] = slew;
+        self.command.slew[c] = slew;
         // Two zones, one after the other, are one as wide as both.
         let mut dead_zone = zero;
         for zone in &self.lists.dead_zones {
             dead_zone = dead_zone + zone[c].at(now);
         }
-        self.dead_zone[c] = dead_zone;
+        self.command.dead_zone[c] = dead_zone;
         let mut blocked = zero;
         for hold in &self.lists.command_holds {
             let [holds, _] = hold.at(c, step, seed, episodes);
             blocked = blocked.max(holds);
         }
-        self.blocked[c] = blocked;
+        self.command.blocked[c] = blocked;
         for ring in &mut self.lists.command_rings {
             ring.hold(c, step);
         }
     }
 
-    /// Replaces the wanted command by the one that arrives at the actuator. What a sampled controller sends is constant
-    /// within a step, and stays so however late it arrives: delays are whole steps.
+    /// Evaluates the actuators at a moment of step number `step`; the phases of what oscillates have been turned.
+    #[inline(always)]
+    pub(crate) fn evaluate_command(&mut self, step: u32, moment: Moment) {
+        if moment == Moment::Start || !self.lists.command_waves.is_empty() || self.carries() {
+            self.actuator.gain = self.command.gain;
+            self.actuator.bias = self.command.bias;
+        }
+        if !self.lists.dead_zones.is_empty() {
+            self.actuator.dead_zone = Some(self.command.dead_zone);
+        }
+        for waves in &mut self.lists.command_waves {
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], moment != Moment::Start);
+                self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
+            }
+        }
+        if self.carries() {
+            self.carry_command(step, moment);
+        }
+        if !self.lists.rate_limits.is_empty() {
+            self.limit_rate(step, moment);
+        }
+    }
+
+    /// Replaces the demanded command by the one that arrives at the actuator. What a sampled controller sends is
+    /// constant within a step, and stays so however late it arrives: delays are whole steps.
     #[inline(always)]
     pub(crate) fn carry_command(&mut self, step: u32, moment: Moment) {
         let (zero, one, half) = (L::number(0.0), L::number(1.0), L::number(0.5));
@@ -97,7 +122,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
                 [sent] = ring.or_past(c, [sent], [zero]);
             }
             if !self.lists.command_holds.is_empty() && !first {
-                let blocked = self.blocked[c];
+                let blocked = self.command.blocked[c];
                 other = [L::select_le(half, blocked, self.last_arrived[c], other[0])];
                 sent = L::select_le(half, blocked, zero, sent);
             }
@@ -113,15 +138,15 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         for c in 0..NC {
             let slew = match moment {
                 Moment::Start if step == 0 => L::splat(L::Real::MAX),
-                Moment::Middle => self.slew[c] * L::number(0.5),
-                Moment::Start | Moment::End => self.slew[c],
+                Moment::Middle => self.command.slew[c] * L::number(0.5),
+                Moment::Start | Moment::End => self.command.slew[c],
             };
             self.actuator.low[c] = self.last_command[c] - slew;
             self.actuator.high[c] = self.last_command[c] + slew;
         }
     }
 
-    /// Takes in what was wanted at the start of step number `step`: what of it was sent, and what arrived.
+    /// Takes in what was demanded at the start of step number `step`: what of it was sent, and what arrived.
     #[inline(always)]
     pub(crate) fn remember_command(&mut self, c: usize, step: u32, sent: L) {
         if self.ticks(step) {
@@ -137,7 +162,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         self.last_arrived[c] = if step == 0 {
             carried[0]
         } else {
-            L::select_le(half, self.blocked[c], last, carried[0])
+            L::select_le(half, self.command.blocked[c], last, carried[0])
         };
     }
 }

@@ -11,8 +11,7 @@
 )]
 
 use super::window::Window;
-use crate::model::lanes::math::clamp;
-use crate::model::lanes::{Lane, MAX_WIDTH, Real};
+use crate::model::lanes::{Lane, MAX_WIDTH};
 
 /// The last samples of `NV` signals of each channel. A delay reads the oldest and puts the newest in its place; a
 /// replay stops recording at its onset, and reads the same samples again and again.
@@ -40,48 +39,6 @@ pub(crate) enum Moment {
     Start,
     Middle,
     End,
-}
-
-/// What is between the command that is demanded and the one that acts: clamp(gain demanded + bias, low, high), where
-/// what is within the dead zone, if there is one, gives nothing.
-#[derive(Clone)]
-pub(crate) struct Actuator<L, const NC: usize> {
-    pub(crate) gain: [L; NC],
-    pub(crate) bias: [L; NC],
-    pub(crate) low: [L; NC],
-    pub(crate) high: [L; NC],
-    pub(crate) dead_zone: Option<[L; NC]>,
-}
-
-impl<L: Lane, const NC: usize> Actuator<L, NC> {
-    /// One that obeys.
-    pub(crate) fn sound() -> Self {
-        let (zero, one) = (L::number(0.0), L::number(1.0));
-        let far = L::splat(L::Real::MAX);
-        Self {
-            gain: [one; NC],
-            bias: [zero; NC],
-            low: [-far; NC],
-            high: [far; NC],
-            dead_zone: None,
-        }
-    }
-
-    /// The command that acts on a channel.
-    #[inline(always)]
-    pub(crate) fn command(&self, c: usize, sent: L) -> L {
-        let mut arrived = sent.mul_add(self.gain[c], self.bias[c]);
-        if let Some(dead_zone) = &self.dead_zone {
-            arrived = beyond_dead_zone(arrived, dead_zone[c]);
-        }
-        clamp(arrived, self.low[c], self.high[c])
-    }
-}
-
-/// What of a command goes beyond a dead zone of this half width.
-#[inline(always)]
-pub(crate) fn beyond_dead_zone<L: Lane>(command: L, half_width: L) -> L {
-    command - clamp(command, -half_width, half_width)
 }
 
 impl<L: Lane, const NC: usize, const NV: usize> DelayLine<L, NC, NV> {

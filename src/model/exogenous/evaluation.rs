@@ -8,7 +8,7 @@
 
 use super::delay_line::Moment;
 use super::inputs::ExogenousInputs;
-use super::lists::Oscillation;
+use super::lists::turned;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
@@ -99,13 +99,6 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         let half = L::number(0.5);
         self.disturbance = self.held_disturbance;
         self.sensor_fault = self.held_sensor;
-        if moment == Moment::Start || !self.lists.command_waves.is_empty() || self.carries() {
-            self.actuator.gain = self.command_gain;
-            self.actuator.bias = self.command_bias;
-        }
-        if !self.lists.dead_zones.is_empty() {
-            self.actuator.dead_zone = Some(self.dead_zone);
-        }
         for sines in &mut self.lists.sines {
             for c in 0..NC {
                 let sine = turned(&mut sines[c], advance);
@@ -131,18 +124,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
                 self.sensor_fault[c] = shape.mul_add(squares[c].held, self.sensor_fault[c]);
             }
         }
-        for waves in &mut self.lists.command_waves {
-            for c in 0..NC {
-                let sine = turned(&mut waves[c], advance);
-                self.actuator.bias[c] = sine.mul_add(waves[c].held, self.actuator.bias[c]);
-            }
-        }
-        if self.carries() {
-            self.carry_command(step, moment);
-        }
-        if !self.lists.rate_limits.is_empty() {
-            self.limit_rate(step, moment);
-        }
+        self.evaluate_command(step, moment);
     }
 
     /// x and x' as they are measured at a moment of the step.
@@ -183,13 +165,4 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             seen = recalled;
         }
     }
-}
-
-/// The sine of a wave's phase, half a step later if it is to `advance`.
-#[inline(always)]
-pub(crate) fn turned<L: Lane>(wave: &mut Oscillation<L>, advance: bool) -> L {
-    if advance {
-        wave.phase = L::turns_add(wave.phase, wave.advance);
-    }
-    L::turns_sin(wave.phase)
 }

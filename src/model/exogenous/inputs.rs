@@ -1,9 +1,9 @@
 //! Everything that acts on one agent's channels from outside, and what the loop keeps of it.
 
-use super::delay_line::Actuator;
+use super::actuator::{Actuator, HeldCommand};
 use super::lists::SignalLists;
 use super::noise::Turbulence;
-use crate::model::lanes::{Lane, Real};
+use crate::model::lanes::Lane;
 
 /// Everything that acts on one agent's channels from outside.
 #[derive(Clone)]
@@ -25,15 +25,8 @@ pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
     /// What of d1 and of f2 is held over this step.
     pub(crate) held_disturbance: [L; NC],
     pub(crate) held_sensor: [L; NC],
-    /// What faults leave of the command in this step, and what they add to it.
-    pub(crate) command_gain: [L; NC],
-    pub(crate) command_bias: [L; NC],
-    /// By how much the acting command may change in a step.
-    pub(crate) slew: [L; NC],
-    /// Up to which size the command gives nothing.
-    pub(crate) dead_zone: [L; NC],
-    /// Whether the link brings no new command (1 or 0).
-    pub(crate) blocked: [L; NC],
+    /// What faults do to the command in this step.
+    pub(crate) command: HeldCommand<L, NC>,
     /// By what share x and x' are measured too large in this step.
     pub(crate) scale: [L; NC],
     /// Whether the measurement stays what it was (1 or 0).
@@ -69,11 +62,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             turbulences: Vec::new(),
             held_disturbance: zero,
             held_sensor: zero,
-            command_gain: one,
-            command_bias: zero,
-            slew: [L::splat(L::Real::MAX); NC],
-            dead_zone: zero,
-            blocked: zero,
+            command: HeldCommand::sound(),
             scale: zero,
             frozen: zero,
             inverse_inertia: one,

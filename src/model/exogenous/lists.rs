@@ -20,6 +20,15 @@ pub(crate) struct Oscillation<L: Lane> {
     pub(crate) held: L,
 }
 
+/// The sine of a wave's phase, half a step later if it is to `advance`.
+#[inline(always)]
+pub(crate) fn turned<L: Lane>(wave: &mut Oscillation<L>, advance: bool) -> L {
+    if advance {
+        wave.phase = L::turns_add(wave.phase, wave.advance);
+    }
+    L::turns_sin(wave.phase)
+}
+
 /// What the items of a list have beside their windows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ListShape {

@@ -1,5 +1,6 @@
 //! Disturbances and faults of one agent's channels: what is held over a step, and what varies within it.
 
+pub(crate) mod actuator;
 mod command_path;
 pub(crate) mod delay_line;
 pub(crate) mod dryden;

@@ -2,10 +2,11 @@
 //! (9) and whatever acts on it.
 
 pub(crate) mod biped;
+pub(crate) mod kinds;
 pub mod leg;
 pub mod uav;
 
-use super::exogenous::delay_line::Actuator;
+use super::exogenous::actuator::Actuator;
 use super::lanes::Lane;
 
 /// Four numbers of a reference table. A channel's first row at an instant is r, r', r'' and the feedforward
