@@ -147,7 +147,7 @@ fn thrust_respond(stage: u32, inputs: Inputs) -> Response {
     let pitch_command = clamp(pitch_demanded, -tilt, tilt);
 
     if own.channel < 3u {
-        // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
+        // Thrust: demanded, then limited; the acceleration that it can give is the applied feedback.
         let thrust_demanded = sqrt(fma(fx, fx, fma(fy, fy, fz * fz)));
         let thrust = clamp(thrust_demanded, 0.0, uniforms.plant.max_thrust);
         let commanded_axis = body_axis(roll, pitch, yaw_sin_cos);

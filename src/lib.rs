@@ -26,6 +26,29 @@
 //!
 //! The program's own room, `cli` (arguments, exit codes, progress), stands on top of all.
 //!
+//! # Example
+//! From a campaign file to the statistics, without a directory of a run:
+//! ```
+//! use urts_mc::backend::cpu::Precision;
+//! use urts_mc::campaign::Campaign;
+//! use urts_mc::controllers::GainSet;
+//! use urts_mc::results::Results;
+//! use urts_mc::simulation::{RunOptions, simulate};
+//!
+//! let campaign = Campaign::load("campaigns/smoke.toml".as_ref())?.with_episodes(16)?;
+//! let gains = GainSet::synthesize_or_load(&campaign)?;
+//! let options = RunOptions::cpu(Precision::F64);
+//! let simulation = simulate(&campaign, &gains, &options, None, &|_finished| ())?;
+//! let results = Results::of(&campaign, &simulation.tables.scores, &simulation.pool);
+//!
+//! for row in results.summary.iter().filter(|row| row.metric == "rmse") {
+//!     let (share, error, _interval) = row.quantiles[0];
+//!     println!("{} {}: {share} of the RMS errors are below {error:?}", row.failures.controller, row.group);
+//! }
+//! assert_eq!(simulation.episodes(), 16);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Invariants
 //! - A [`campaign::Campaign`] is complete and consistent; nothing after it checks input again.
 //! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a

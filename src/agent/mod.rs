@@ -113,6 +113,15 @@ impl Agent {
         }
     }
 
+    /// The file that it was read from, if there is one.
+    #[must_use]
+    pub fn file(&self) -> Option<&RobotFile> {
+        match self {
+            Self::Uav(_) => None,
+            Self::Biped(biped) => Some(&biped.file),
+        }
+    }
+
     /// Names of the channels: axes and angles of a UAV, joints of a robot.
     pub(crate) fn channels(&self) -> Vec<Arc<str>> {
         match self {

@@ -3,7 +3,8 @@
 use super::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
-use crate::model::episode::{AgentOutcome, Controller, Model, Snapshot};
+use crate::model::controller::kinds::Controller;
+use crate::model::episode::{AgentOutcome, Model, Snapshot};
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
@@ -63,7 +64,7 @@ impl Simd {
     }
 }
 
-/// A campaign's controllers, ready to fly in one precision and layout.
+/// A campaign's controllers, ready in one precision and layout.
 pub struct Cpu(Loop);
 
 enum Loop {
@@ -109,7 +110,8 @@ impl Cpu {
         }
     }
 
-    /// Flies a range of episodes under every controller, in order; `done` is told of each finished block's episodes.
+    /// Simulates a range of episodes under every controller, in order; `done` is told of each finished block's
+    /// episodes.
     #[must_use]
     pub fn simulate(
         &self,
@@ -134,7 +136,7 @@ impl Cpu {
         }
     }
 
-    /// Flies one episode under one controller and shows it every `every` steps.
+    /// Simulates one episode under one controller and shows it every `every` steps.
     #[must_use]
     pub fn trace(
         &self,

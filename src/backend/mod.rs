@@ -1,4 +1,4 @@
-//! Where episodes are flown: draws in, outcomes out.
+//! Where episodes are simulated: draws in, outcomes out.
 //!
 #![doc = include_str!("README.md")]
 

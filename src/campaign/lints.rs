@@ -1,4 +1,4 @@
-//! What a campaign may do, but its writer has probably not meant: said before the flight, forbidden by nothing.
+//! What a campaign may do, but its writer has probably not meant: said before the run, forbidden by nothing.
 
 use super::distribution::Distribution;
 use super::disturbances_and_faults::Fault;

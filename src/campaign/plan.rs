@@ -144,8 +144,8 @@ impl Sampling {
         }
     }
 
-    /// An episode's replicate, and its place in it: they take turns, so that what is flown of a run that ends early is
-    /// balanced.
+    /// An episode's replicate, and its place in it: they take turns, so that what is simulated of a run that ends early
+    /// is balanced.
     #[must_use]
     pub fn place(self, episode: u32) -> Option<(u32, u32)> {
         let replicates = self.replicates()?.max(1);

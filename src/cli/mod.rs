@@ -320,11 +320,11 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
     let figures = trace(&replayed);
     OutputFile::claim(&files.page)?.write(figures.html.as_bytes())?;
     OutputFile::claim(&files.picture)?.write(figures.svg.as_bytes())?;
-    let flight = (run.as_path(), *episode, controller.as_str());
+    let shown = (run.as_path(), *episode, controller.as_str());
     if *json {
-        print_json(&terminal::replay_json(&replayed, flight, &files))?;
+        print_json(&terminal::replay_json(&replayed, shown, &files))?;
     } else if !quiet {
-        print(&terminal::replay(&replayed, flight, &files))?;
+        print(&terminal::replay(&replayed, shown, &files))?;
     }
     Ok(Code::Done)
 }

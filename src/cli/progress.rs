@@ -7,11 +7,11 @@ use std::time::Duration;
 use urts_mc::campaign::Campaign;
 use urts_mc::run::Progress;
 
-/// A line on standard error that says what goes on, with rate and time left of a flight. It is shown on a terminal
+/// A line on standard error that says what goes on, with rate and time left of a simulation. It is shown on a terminal
 /// only, and taken away at the end.
 pub(super) struct ProgressLine {
     bar: ProgressBar,
-    /// Whether the flight may end before its last episode.
+    /// Whether the simulation may end before its last episode.
     may_stop: bool,
 }
 

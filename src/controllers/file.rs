@@ -1,4 +1,4 @@
-//! gains.json: what a run writes, and what a campaign may fly instead of a synthesis.
+//! gains.json: what a run writes, and what a campaign may take instead of a synthesis.
 
 use super::error::GainsError;
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
@@ -161,7 +161,7 @@ pub(super) fn controller(
         let findings = if check {
             Some(verified(design, &gains).map_err(refused)?)
         } else {
-            // A run that wrote them in another form is flown all the same.
+            // A run that wrote them in another form is simulated all the same.
             let written = written.as_ref().and_then(|findings| findings.get(role));
             written.and_then(|findings| Findings::deserialize(findings).ok())
         };

@@ -48,7 +48,7 @@ impl GainSet {
         Ok(set)
     }
 
-    /// Reads the gains of a run back; they were verified when it was flown.
+    /// Reads the gains of a run back; they were verified when it was simulated.
     ///
     /// # Errors
     /// If the file is unreadable or lacks a controller.

@@ -5,7 +5,7 @@
     reason = "a channel is one index of several arrays, as in the shaders"
 )]
 
-use super::controller::{ChannelGains, fault_estimates, feedback};
+use super::controller::Law;
 use super::exogenous::delay_line::Moment;
 use super::exogenous::vortex::Vortex;
 use super::exogenous::{ExogenousInputs, kernels};
@@ -17,10 +17,11 @@ use super::plant::{Inputs, Plant, ReferenceRow, Response};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::campaign::{Campaign, CouplingCoordinates};
 
-/// Constants of a group: plant, gains and limits of its channels.
-pub(crate) struct GroupParameters<'t, P, R, const NC: usize> {
+/// Constants of a group: plant, controller and limits of its channels.
+pub(crate) struct GroupParameters<'t, P, C, R, const NC: usize> {
     pub(crate) plant: P,
-    pub(crate) gains: [ChannelGains<R>; NC],
+    /// The law of each channel.
+    pub(crate) controller: [C; NC],
     pub(crate) limits: [Limits<R>; NC],
     pub(crate) coupling: Coupling,
     /// Whether the first output is the integral of what is measured, and not that of e.
@@ -114,9 +115,9 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
     /// u_fb at the state of stage `STAGE` of step number `step`: a sampled controller holds it from one of its ticks to
     /// the next.
     #[inline(always)]
-    pub(crate) fn feedback<P, const STAGE: usize>(
+    pub(crate) fn feedback<P, C: Law<L, NS>, const STAGE: usize>(
         &self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         step: u32,
     ) -> [L; NC] {
         if self.signals.hold_steps > 1 && (STAGE > 0 || !self.signals.ticks(step)) {
@@ -125,16 +126,16 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         // A closure would be compiled without the lanes' instructions.
         let mut sent = [L::number(0.0); NC];
         for c in 0..NC {
-            sent[c] = feedback(&setting.gains[c], self.channels[c].at::<STAGE>());
+            sent[c] = setting.controller[c].feedback(self.channels[c].at::<STAGE>());
         }
         sent
     }
 
     /// The answer of the plant at the state of stage `STAGE` of agent number `own` of its team.
     #[inline(always)]
-    pub(crate) fn respond<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn respond<P: Plant<L, NC, NX>, C: Law<L, NS>, const STAGE: usize>(
         &self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         team: &Team<'_, L, NC>,
         own: usize,
@@ -168,7 +169,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         }
         let inputs = Inputs {
             reference: rows,
-            feedback: self.feedback::<P, STAGE>(setting, step),
+            feedback: self.feedback::<P, C, STAGE>(setting, step),
             position,
             velocity,
             force,
@@ -199,20 +200,20 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
 
     /// Keeps what the next step needs of the start of this one.
     #[inline(always)]
-    pub(crate) fn remember<P: Plant<L, NC, NX>>(
+    pub(crate) fn remember<P: Plant<L, NC, NX>, C: Law<L, NS>>(
         &mut self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         response: &Response<L, NC, NX>,
         step: u32,
     ) {
-        self.held_feedback = self.feedback::<P, 0>(setting, step);
+        self.held_feedback = self.feedback::<P, C, 0>(setting, step);
         let motion = self.motion::<P, 0>(&setting.plant, rows);
         kernels::remember(&mut self.signals, step, &response.sent, &motion);
     }
 
     #[inline(always)]
-    pub(crate) fn observe<P: Plant<L, NC, NX>, const SETTLED: bool>(
+    pub(crate) fn observe<P: Plant<L, NC, NX>, C: Law<L, NS>, const SETTLED: bool>(
         &mut self,
         limits: &[Limits<L::Real>; NC],
         response: &Response<L, NC, NX>,
@@ -222,7 +223,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
         let (never, now) = (L::number(f64::INFINITY), L::number(f64::from(step)));
         for c in 0..NC {
             let state = self.channels[c].at::<0>();
-            let [f1_hat, f2_hat] = fault_estimates(state);
+            let [f1_hat, f2_hat] = C::fault_estimates(state);
             let f1 = response.error_acceleration[c] - response.applied_feedback[c];
             let sample = Sample {
                 error: state[1],

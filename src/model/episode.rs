@@ -6,7 +6,10 @@
 )]
 
 use super::agent::{Agent, Coupling, GroupParameters};
-use super::controller::{ChannelGains, FTC_STATES, OBSERVER, PID_STATES, TRUE_STATES};
+use super::controller::Law;
+use super::controller::kinds::{Controller, Family};
+use super::controller::observer_feedback::{FTC_STATES, PID_STATES};
+use super::controller::true_state::TRUE_STATES;
 use super::inputs::{ChannelInputs, LaneBlock, Selection, changes};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
@@ -17,30 +20,11 @@ use super::subsystem::{Subsystem, parts};
 use super::team::{Advance, Ending, Show, TeamState};
 use crate::campaign::{Campaign, IntegralKind, ObserverStart};
 use crate::draw::Episode;
-use crate::synthesis::LoopGains;
 
 /// The episode loop of a campaign in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
     pub(crate) campaign: Campaign,
     pub(crate) parts: Vec<Subsystem<R>>,
-}
-
-/// A controller in the precision of the loop: its gains on each channel group.
-#[derive(Debug, Clone)]
-pub struct Controller<R> {
-    pub(crate) gains: Vec<ChannelGains<R>>,
-    pub(crate) kind: ControllerKind,
-}
-
-/// What a controller works from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ControllerKind {
-    /// The estimates of an observer with fault states: the paper's fault-tolerant controller.
-    Ftc,
-    /// The estimates of an observer without them.
-    Pid,
-    /// The state itself. No campaign names such a controller.
-    TrueState,
 }
 
 /// How an agent fared in an episode under one controller.
@@ -61,7 +45,7 @@ pub struct Snapshot {
     pub step: u32,
     /// `[agent][channel]`.
     pub agents: Vec<Vec<ChannelSample>>,
-    /// What the loops hold, `[agent][channel]`; empty where a GPU flew, which does not send it back.
+    /// What the loops hold, `[agent][channel]`; empty where a GPU simulated, which does not send it back.
     pub internals: Vec<Vec<ObserverState>>,
 }
 
@@ -83,37 +67,6 @@ impl AgentOutcome {
     }
 }
 
-impl<R: Real> Controller<R> {
-    /// A controller from its gains on each channel group, all of one kind (reading a gains file refuses others).
-    #[must_use]
-    pub fn new(groups: &[LoopGains]) -> Self {
-        let ftc = |gains: &LoopGains| gains.states + OBSERVER == FTC_STATES;
-        Self {
-            gains: groups.iter().map(ChannelGains::new).collect(),
-            kind: if groups.iter().all(ftc) {
-                ControllerKind::Ftc
-            } else {
-                ControllerKind::Pid
-            },
-        }
-    }
-}
-
-impl Controller<f64> {
-    /// A controller that measures without error: u_fb = K [int e, e, e']' with the K of each channel group. It shows
-    /// the plant apart from any observer, in double precision; no campaign names it.
-    #[must_use]
-    pub fn true_state(groups: &[[f64; 3]]) -> Self {
-        Self {
-            gains: groups
-                .iter()
-                .map(|&feedback| ChannelGains::true_state(feedback))
-                .collect(),
-            kind: ControllerKind::TrueState,
-        }
-    }
-}
-
 impl<R: Real> Model<R> {
     /// Tabulates the references of a campaign.
     #[must_use]
@@ -124,7 +77,7 @@ impl<R: Real> Model<R> {
         }
     }
 
-    /// Flies at most `L::WIDTH` episodes under a controller: `[episode][agent]`.
+    /// Simulates at most `L::WIDTH` episodes under a controller: `[episode][agent]`.
     #[must_use]
     pub fn simulate<L: Lane<Real = R>>(
         &self,
@@ -134,7 +87,7 @@ impl<R: Real> Model<R> {
         self.run_loop::<L>(controller, episodes, None).0
     }
 
-    /// Flies one episode and shows it every `every` steps, from the start to the end.
+    /// Simulates one episode and shows it every `every` steps, from the start to the end.
     #[must_use]
     pub fn trace<L: Lane<Real = R>>(
         &self,
@@ -157,9 +110,8 @@ impl<R: Real> Model<R> {
         every: Option<u32>,
     ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
         let blank = AgentOutcome::blank(self.campaign.channels().len());
-        let mut flight = EpisodeLoop {
+        let mut running = EpisodeLoop {
             model: self,
-            controller,
             block: LaneBlock {
                 campaign: &self.campaign,
                 episodes,
@@ -169,25 +121,24 @@ impl<R: Real> Model<R> {
             snapshots: Vec::new(),
         };
         for part in &self.parts {
-            match controller.kind {
-                ControllerKind::Ftc => flight.part::<L, FTC_STATES>(part),
-                ControllerKind::Pid => flight.part::<L, PID_STATES>(part),
+            match &controller.family {
+                Family::FaultTolerant(laws) => running.part::<L, _, FTC_STATES>(part, laws),
+                Family::Pid(laws) => running.part::<L, _, PID_STATES>(part, laws),
                 // `Controller::true_state` exists in double precision only, so no other precision needs this loop.
-                ControllerKind::TrueState => {
+                Family::TrueState(laws) => {
                     if R::IS_REFERENCE {
-                        flight.part::<L, TRUE_STATES>(part);
+                        running.part::<L, _, TRUE_STATES>(part, laws);
                     }
                 }
             }
         }
-        (flight.outcomes, flight.snapshots)
+        (running.outcomes, running.snapshots)
     }
 }
 
 /// A block of episodes under one controller.
 struct EpisodeLoop<'a, R> {
     model: &'a Model<R>,
-    controller: &'a Controller<R>,
     block: LaneBlock<'a>,
     /// Steps between two snapshots, if any are taken.
     every: Option<u32>,
@@ -196,31 +147,37 @@ struct EpisodeLoop<'a, R> {
 }
 
 impl<R: Real> EpisodeLoop<'_, R> {
-    fn part<L: Lane<Real = R>, const NS: usize>(&mut self, part: &Subsystem<R>) {
+    fn part<L, C, const NS: usize>(&mut self, part: &Subsystem<R>, laws: &[C])
+    where
+        L: Lane<Real = R>,
+        C: Law<L, NS>,
+    {
         match part.plant {
-            AnyPlant::Axis(plant) => self.group::<L, _, 1, NS, 0>(plant, part),
-            AnyPlant::Translation(plant) => self.group::<L, _, 3, NS, 0>(plant, part),
-            AnyPlant::Attitude(plant) => self.group::<L, _, 3, NS, 0>(plant, part),
-            AnyPlant::Thrust(plant) => self.group::<L, _, 6, NS, 4>(plant, part),
-            AnyPlant::FreeLeg(plant) => self.group::<L, _, 6, NS, 0>(plant, part),
-            AnyPlant::CutLeg(plant) => self.group::<L, _, 6, NS, 0>(plant, part),
+            AnyPlant::Axis(plant) => self.group::<L, _, _, 1, NS, 0>(plant, part, laws),
+            AnyPlant::Translation(plant) => self.group::<L, _, _, 3, NS, 0>(plant, part, laws),
+            AnyPlant::Attitude(plant) => self.group::<L, _, _, 3, NS, 0>(plant, part, laws),
+            AnyPlant::Thrust(plant) => self.group::<L, _, _, 6, NS, 4>(plant, part, laws),
+            AnyPlant::FreeLeg(plant) => self.group::<L, _, _, 6, NS, 0>(plant, part, laws),
+            AnyPlant::CutLeg(plant) => self.group::<L, _, _, 6, NS, 0>(plant, part, laws),
         }
     }
 
-    fn group<L, P, const NC: usize, const NS: usize, const NX: usize>(
+    fn group<L, P, C, const NC: usize, const NS: usize, const NX: usize>(
         &mut self,
         plant: P,
         part: &Subsystem<R>,
+        laws: &[C],
     ) where
         L: Lane<Real = R>,
         P: Plant<L, NC, NX>,
+        C: Law<L, NS>,
     {
         let campaign = &self.model.campaign;
         let first = part.channels.start;
         let verdict = &campaign.verdict;
         let setting = GroupParameters {
             plant,
-            gains: std::array::from_fn(|c| self.controller.gains[campaign.group_of(first + c)]),
+            controller: std::array::from_fn(|c| laws[campaign.group_of(first + c)]),
             limits: std::array::from_fn(|c| {
                 Limits::new(
                     verdict.max_error[first + c],
@@ -274,15 +231,16 @@ impl<R: Real> EpisodeLoop<'_, R> {
     }
 
     /// The initial state of an agent and what will act on it.
-    fn agent<L, P, const NC: usize, const NS: usize, const NX: usize>(
+    fn agent<L, P, C, const NC: usize, const NS: usize, const NX: usize>(
         &self,
-        setting: &GroupParameters<'_, P, R, NC>,
+        setting: &GroupParameters<'_, P, C, R, NC>,
         agent: usize,
         first: usize,
     ) -> Agent<L, NC, NS, NX>
     where
         L: Lane<Real = R>,
         P: Plant<L, NC, NX>,
+        C: Law<L, NS>,
     {
         let campaign = &self.model.campaign;
         let condition: ChannelInputs<L, NC> = self.block.condition(agent, first, Selection::Acting);
@@ -299,13 +257,8 @@ impl<R: Real> EpisodeLoop<'_, R> {
             let [integral, error, rate] = condition.initial[c];
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
-            if NS > OBSERVER && campaign.initial.observer == ObserverStart::Measured {
-                state[OBSERVER..OBSERVER + 3].copy_from_slice(&setting.gains[c].measured(
-                    integral,
-                    error + off[c][0],
-                    rate + off[c][1],
-                    sensor_fault[c],
-                ));
+            if campaign.initial.observer == ObserverStart::Measured {
+                setting.controller[c].start(&mut state, off[c], sensor_fault[c]);
             }
             state
         });

@@ -34,6 +34,6 @@ pub struct ObserverState {
     pub integral: f64,
     /// The observer's states `[int e, e, e', F1 (2), F2 (2)]`, zero beyond those that it has.
     pub observer: [f64; LOOP_STATES],
-    /// The feedback that the observer is told was commanded.
+    /// The feedback that was applied, of which the observer knows.
     pub applied_feedback: f64,
 }

@@ -9,7 +9,7 @@
 )]
 
 use super::agent::{Agent, Coupling, GroupParameters, Team};
-use super::controller::{Measured, OBSERVER, error_estimate, fault_estimates, step_channel};
+use super::controller::{Law, Measured, OBSERVER};
 use super::exogenous::delay_line::Moment;
 use super::exogenous::{ExogenousInputs, kernels};
 use super::integrator::Step;
@@ -124,9 +124,9 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
 
     /// The sum of x over the team, which the coupling needs.
     #[inline(always)]
-    pub(crate) fn team_sum<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn team_sum<P: Plant<L, NC, NX>, C, const STAGE: usize>(
         &self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
     ) -> [L; NC] {
         let mut sum = [L::number(0.0); NC];
@@ -144,9 +144,9 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
 
     /// Sets where the agents show themselves to be.
     #[inline(always)]
-    pub(crate) fn place_agents<P: Plant<L, NC, NX>, const STAGE: usize>(
+    pub(crate) fn place_agents<P: Plant<L, NC, NX>, C, const STAGE: usize>(
         &mut self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
     ) {
         if NC > HEIGHT && !self.places.is_empty() {
@@ -160,14 +160,19 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
     }
 
     #[inline(always)]
-    pub(crate) fn stage<P: Plant<L, NC, NX>, const STAGE: usize, const SETTLED: bool>(
+    pub(crate) fn stage<
+        P: Plant<L, NC, NX>,
+        C: Law<L, NS>,
+        const STAGE: usize,
+        const SETTLED: bool,
+    >(
         &mut self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         rows: &[ReferenceRow<L::Real>],
         h: &Step<L::Real>,
     ) {
-        let sum = self.team_sum::<P, STAGE>(setting, rows);
-        self.place_agents::<P, STAGE>(setting, rows);
+        let sum = self.team_sum::<P, C, STAGE>(setting, rows);
+        self.place_agents::<P, C, STAGE>(setting, rows);
         let team = Team {
             sum,
             places: &self.places,
@@ -176,17 +181,16 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
         let (step, remembers) = (self.step, self.remembers);
         let rows = rows.chunks_exact(NC * P::ROWS);
         for ((own, agent), rows) in self.agents.iter_mut().enumerate().zip(rows) {
-            let response = agent.respond::<P, STAGE>(setting, rows, &team, own, step);
+            let response = agent.respond::<P, C, STAGE>(setting, rows, &team, own, step);
             let off = agent.distortion::<P, STAGE>(&setting.plant, rows);
             if STAGE == 0 {
-                agent.observe::<P, SETTLED>(&setting.limits, &response, &off, step);
+                agent.observe::<P, C, SETTLED>(&setting.limits, &response, &off, step);
                 if remembers {
                     agent.remember(setting, rows, &response, step);
                 }
             }
             for c in 0..NC {
-                step_channel::<L, NS, STAGE>(
-                    &setting.gains[c],
+                setting.controller[c].step::<STAGE>(
                     &mut agent.channels[c],
                     response.error_acceleration[c],
                     &Measured {
@@ -221,9 +225,9 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
 
     /// Integrates up to step number `until`.
     #[inline(always)]
-    pub(crate) fn advance<P: Plant<L, NC, NX>>(
+    pub(crate) fn advance<P: Plant<L, NC, NX>, C: Law<L, NS>>(
         &mut self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
         until: u32,
     ) {
         let h = Step::new(setting.step_s);
@@ -235,15 +239,15 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
             let (start, rest) = rows.split_at(stride);
             let (middle, end) = rest.split_at(stride);
             if self.step >= setting.settle_step {
-                self.stage::<P, 0, true>(setting, start, &h);
+                self.stage::<P, C, 0, true>(setting, start, &h);
             } else {
-                self.stage::<P, 0, false>(setting, start, &h);
+                self.stage::<P, C, 0, false>(setting, start, &h);
             }
             self.evaluate(Moment::Middle);
-            self.stage::<P, 1, false>(setting, middle, &h);
-            self.stage::<P, 2, false>(setting, middle, &h);
+            self.stage::<P, C, 1, false>(setting, middle, &h);
+            self.stage::<P, C, 2, false>(setting, middle, &h);
             self.evaluate(Moment::End);
-            self.stage::<P, 3, false>(setting, end, &h);
+            self.stage::<P, C, 3, false>(setting, end, &h);
             self.end_step(setting.seed);
             self.step += 1;
             if self.step.is_multiple_of(FLUSH_STEPS) {
@@ -263,17 +267,17 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
 
     /// What the first lane shows and holds at the current step, `[agent][channel]`.
     #[inline(always)]
-    pub(crate) fn show<P: Plant<L, NC, NX>>(
+    pub(crate) fn show<P: Plant<L, NC, NX>, C: Law<L, NS>>(
         &mut self,
-        setting: &GroupParameters<'_, P, L::Real, NC>,
+        setting: &GroupParameters<'_, P, C, L::Real, NC>,
     ) -> Vec<[(ChannelSample, ObserverState); NC]> {
         // Repeating this is harmless: what is held depends on the step alone.
         self.hold(setting.seed);
         let stride = self.agents.len() * NC * P::ROWS;
         let first = 2 * self.step as usize * stride;
         let rows = &setting.table[first..first + stride];
-        let sum = self.team_sum::<P, 0>(setting, rows);
-        self.place_agents::<P, 0>(setting, rows);
+        let sum = self.team_sum::<P, C, 0>(setting, rows);
+        self.place_agents::<P, C, 0>(setting, rows);
         let team = Team {
             sum,
             places: &self.places,
@@ -288,19 +292,19 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
             .zip(rows.chunks_exact(NC * P::ROWS))
             .zip(&mut shown)
         {
-            let response = agent.respond::<P, 0>(setting, rows, &team, own, self.step);
+            let response = agent.respond::<P, C, 0>(setting, rows, &team, own, self.step);
             let off = agent.distortion::<P, 0>(&setting.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&setting.plant, rows);
             for c in 0..NC {
                 let state = agent.channels[c].at::<0>();
-                let [f1_hat, f2_hat] = fault_estimates(state);
+                let [f1_hat, f2_hat] = C::fault_estimates(state);
                 let f1 = response.error_acceleration[c] - response.applied_feedback[c];
                 let seen = ChannelSample {
                     r: first_lane(position[c] - state[1]),
                     x: first_lane(position[c]),
                     e: first_lane(state[1]),
                     e_rate: first_lane(state[2]),
-                    e_hat: first_lane(error_estimate(state)[1]),
+                    e_hat: first_lane(C::error_estimate(state)[1]),
                     f1: first_lane(f1),
                     f1_hat: first_lane(f1_hat),
                     f2: first_lane(agent.signals.sensor_fault[c] + off[c][1]),
@@ -384,14 +388,14 @@ fn finite_step(step: f64) -> Option<u32> {
 }
 
 /// [`TeamState::advance`] as a kernel.
-pub(crate) struct Advance<'a, P, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
+pub(crate) struct Advance<'a, P, C, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
-    pub(crate) setting: &'a GroupParameters<'a, P, L::Real, NC>,
+    pub(crate) setting: &'a GroupParameters<'a, P, C, L::Real, NC>,
     pub(crate) until: u32,
 }
 
-impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: usize> Kernel
-    for Advance<'_, P, L, NC, NS, NX>
+impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usize, const NX: usize>
+    Kernel for Advance<'_, P, C, L, NC, NS, NX>
 {
     type Output = ();
     #[inline(always)]
@@ -401,13 +405,13 @@ impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: u
 }
 
 /// [`TeamState::show`] as a kernel.
-pub(crate) struct Show<'a, P, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
+pub(crate) struct Show<'a, P, C, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
-    pub(crate) setting: &'a GroupParameters<'a, P, L::Real, NC>,
+    pub(crate) setting: &'a GroupParameters<'a, P, C, L::Real, NC>,
 }
 
-impl<P: Plant<L, NC, NX>, L: Lane, const NC: usize, const NS: usize, const NX: usize> Kernel
-    for Show<'_, P, L, NC, NS, NX>
+impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usize, const NX: usize>
+    Kernel for Show<'_, P, C, L, NC, NS, NX>
 {
     type Output = Vec<[(ChannelSample, ObserverState); NC]>;
     #[inline(always)]

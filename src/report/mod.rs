@@ -31,8 +31,8 @@ use std::path::Path;
 /// # Errors
 /// If the directory holds no run, or cannot be written.
 pub fn report(dir: &Path) -> Result<(), ReportError> {
-    let evidence = RunData::read(dir)?;
-    let document = document(&evidence);
+    let data = RunData::read(dir)?;
+    let document = document(&data);
     let out = OutputDir::existing(dir);
     let [html, markdown] = REPORTS;
     out.write(html, html::html(&document).as_bytes())?;
@@ -40,20 +40,20 @@ pub fn report(dir: &Path) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn document(evidence: &RunData) -> Document {
-    let manifest = &evidence.manifest;
-    let campaign = &evidence.campaign;
-    let wrong = [shortcoming(manifest, &evidence.dir), unmet(manifest)];
+fn document(data: &RunData) -> Document {
+    let manifest = &data.manifest;
+    let campaign = &data.campaign;
+    let wrong = [shortcoming(manifest, &data.dir), unmet(manifest)];
     let sections = [
-        Some(failures::section(evidence)),
-        Some(errors::pairs(evidence)),
-        Some(errors::distributions(evidence)),
-        strata::section(evidence),
-        Some(conditions::ranking(evidence)),
-        Some(conditions::worst(evidence)),
-        Some(gains::section(evidence)),
-        Some(conditions::drawn(evidence)),
-        Some(provenance::section(evidence)),
+        Some(failures::section(data)),
+        Some(errors::pairs(data)),
+        Some(errors::distributions(data)),
+        strata::section(data),
+        Some(conditions::ranking(data)),
+        Some(conditions::worst(data)),
+        Some(gains::section(data)),
+        Some(conditions::drawn(data)),
+        Some(provenance::section(data)),
     ];
     let mut lead = manifest.verdict.clone();
     if manifest.episodes > 1 && campaign.controllers.len() > 1 {

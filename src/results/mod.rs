@@ -11,6 +11,7 @@
 
 mod all;
 mod columns;
+pub mod files;
 mod paired;
 mod replicates;
 mod requirements;

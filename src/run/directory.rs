@@ -1,8 +1,9 @@
 //! The directory of a run: who may write there, and files that appear whole or not at all.
 
-use super::error::{MANIFEST, OutputError, REPORTS, TABLES};
+use super::error::{MANIFEST, OutputError, REPORTS};
 use super::manifest::{Manifest, campaign_hash};
 use crate::campaign::Campaign;
+use crate::results::files::RUN_TABLES;
 use crate::results::table::Table;
 use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
 use std::fs::{self, File};
@@ -311,7 +312,7 @@ fn remove(path: PathBuf) -> Result<(), OutputError> {
 /// Whether a file is a table that some run writes.
 fn is_table(name: &str) -> bool {
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
-    TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension)
+    RUN_TABLES.iter().any(|table| table.name == stem) && ["parquet", "csv"].contains(&extension)
 }
 
 /// Whether a file is the table or a figure of a replay.

@@ -4,17 +4,6 @@ use polars::prelude::PolarsError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// The tables of a run; not every run writes all of them.
-pub const TABLES: [&str; 7] = [
-    "episodes",
-    "channels",
-    "summary",
-    "comparison",
-    "screening",
-    "ranking",
-    "worst",
-];
-
 /// The reports of a run.
 pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
 

@@ -33,7 +33,7 @@ pub struct Manifest {
     pub robot: Option<String>,
     /// Seed that was used: the campaign's, unless it was overridden.
     pub seed: u64,
-    /// Episodes that were flown.
+    /// Episodes that were simulated.
     pub episodes: u32,
     /// Episodes that were asked for.
     pub episodes_asked: u32,
@@ -42,11 +42,11 @@ pub struct Manifest {
     /// What became of each `[[require]]`, in the campaign's order; empty in runs of older versions.
     #[serde(default)]
     pub requirements: Vec<RequirementResult>,
-    /// Why fewer were flown than that, if so.
+    /// Why fewer were simulated than that, if so.
     pub interrupted: Option<String>,
     /// Number format of the episode loop.
     pub precision: Precision,
-    /// What flew them.
+    /// What simulated them.
     #[serde(rename = "legs")]
     pub segments: Vec<Segment>,
     /// What there is to know about the choice of the backend.
@@ -97,7 +97,7 @@ impl Manifest {
         serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
     }
 
-    /// The campaign that was flown, with the run's seed and the number of episodes that was asked for.
+    /// The campaign that was simulated, with the run's seed and the number of episodes that was asked for.
     ///
     /// # Errors
     /// If this version does not read the campaign any more.

@@ -8,10 +8,10 @@ pub mod replay_files;
 pub(crate) mod table_reader;
 mod tables;
 
-use crate::agent::Agent;
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;
 use crate::controllers::{GainSet, GainsError};
+use crate::results::files::Found;
 use crate::results::{Results, harm, verdict};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
 use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, open, simulate};
@@ -31,18 +31,18 @@ pub enum RunError {
     /// No directory to write.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// Nothing flown.
+    /// Nothing simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// Fewer episodes flown than the directory holds already.
+    /// Fewer episodes simulated than the directory holds already.
     #[error(
         "{reason}; {simulated} episodes were finished, and {} keeps the {earlier} of an earlier run; use --backend cpu",
         path.display()
     )]
     Interrupted {
-        /// Why no more were flown.
+        /// Why no more were simulated.
         reason: GpuError,
-        /// Episodes that were flown.
+        /// Episodes that were simulated.
         simulated: u32,
         /// The directory.
         path: PathBuf,
@@ -63,16 +63,16 @@ pub struct Findings {
     pub manifest: Manifest,
 }
 
-/// What a run is at, told while it goes on.
+/// What a run is at, reported while it goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
     /// The gains are synthesized or read.
     Gains,
-    /// The flight begins.
+    /// The simulation begins.
     Simulation,
-    /// So many more episodes have been flown.
+    /// So many more episodes have been simulated.
     Simulated(u32),
-    /// Some episodes fly again on the reference.
+    /// Some episodes are simulated again on the reference.
     CrossCheck,
     /// Intervals and tests.
     Statistics,
@@ -80,32 +80,41 @@ pub enum Progress {
     Writing,
 }
 
-/// What a run does beside flying.
+/// What a run does beside simulating.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Extras {
     /// Whether the two big tables are written as CSV too.
     pub csv: bool,
-    /// Episodes that are flown again on the reference; [`GPU_CROSS_CHECK`] on a GPU and none on the CPU if not given.
+    /// Episodes that are simulated again on the reference; [`GPU_CROSS_CHECK`] on a GPU and none on the CPU if not
+    /// given.
     pub cross_check: Option<u32>,
 }
 
-/// Episodes of a GPU's run that are flown again on the reference, if nothing else is asked for.
+/// Episodes of a GPU's run that are simulated again on the reference, if nothing else is asked for.
 pub const GPU_CROSS_CHECK: u32 = 32;
 
 /// Runs a campaign into a directory. A GPU that fails leaves a directory with the episodes that it finished, and the
-/// findings say so. `told` hears what the run is at.
+/// findings say so. `progress` hears what the run is at.
 ///
 /// # Errors
-/// If gains cannot be had, nothing can be flown, or files cannot be written.
+/// If gains cannot be had, nothing can be simulated, or files cannot be written.
 pub fn run(
     campaign: &Campaign,
     options: &RunOptions,
     out: &OutputDir,
     extras: Extras,
-    told: &(dyn Fn(Progress) + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
     let (gpu, notes) = open(options)?;
-    run_on(campaign, options, gpu.as_ref(), notes, out, extras, told)
+    run_on(
+        campaign,
+        options,
+        gpu.as_ref(),
+        notes,
+        out,
+        extras,
+        progress,
+    )
 }
 
 /// [`run`] on a device at hand, to test what becomes of a run whose device fails.
@@ -120,24 +129,29 @@ pub fn run_on(
     mut notes: Vec<String>,
     out: &OutputDir,
     extras: Extras,
-    told: &(dyn Fn(Progress) + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
     let start = Instant::now();
-    told(Progress::Gains);
+    progress(Progress::Gains);
     let gains = GainSet::synthesize_or_load(campaign)?;
     let synthesis_s = start.elapsed().as_secs_f64();
 
-    told(Progress::Simulation);
-    let simulated = |episodes| told(Progress::Simulated(episodes));
-    let flight = simulate(campaign, &gains, options, gpu, &simulated)?;
-    notes.extend(flight.notes.iter().cloned());
+    progress(Progress::Simulation);
+    let simulation = simulate(campaign, &gains, options, gpu, &|episodes| {
+        progress(Progress::Simulated(episodes))
+    })?;
+    notes.extend(simulation.notes.iter().cloned());
     let start = Instant::now();
-    told(Progress::CrossCheck);
-    let (cross_check, cross_check_missing) =
-        match checked(campaign, &gains, options, gpu, &flight, extras.cross_check) {
-            Ok(check) => (check, None),
-            Err(error) => (None, Some(error.to_string())),
-        };
+    progress(Progress::CrossCheck);
+    let (cross_check, cross_check_missing) = checked(
+        campaign,
+        &gains,
+        options,
+        gpu,
+        &simulation,
+        extras.cross_check,
+    );
+    let episodes = simulation.episodes();
     let Simulation {
         tables,
         stopping,
@@ -145,24 +159,20 @@ pub fn run_on(
         segments,
         interrupted,
         ..
-    } = flight;
+    } = simulation;
     times.cross_check_s = start.elapsed().as_secs_f64();
     times.synthesis_s = synthesis_s;
 
-    let episodes = segments.iter().map(|segment| segment.episodes).sum();
     unless_more_is_there(out, interrupted.as_ref(), episodes)?;
 
     let start = Instant::now();
-    told(Progress::Statistics);
-    let results = Results::of(campaign, &tables.scores, &flight.pool);
+    progress(Progress::Statistics);
+    let results = Results::of(campaign, &tables.scores, &simulation.pool);
     times.statistics_s += start.elapsed().as_secs_f64();
 
-    let start = Instant::now();
-    told(Progress::Writing);
-    out.begin()?;
-    tables::write(campaign, &tables, &results, extras.csv, out)?;
-    out.write("gains.json", &pretty(&gains.to_file(campaign))?)?;
-    times.writing_s = start.elapsed().as_secs_f64();
+    progress(Progress::Writing);
+    let found = Found::new(campaign, &tables, &results);
+    times.writing_s = write_tables(found, &gains, extras.csv, out)?;
     let manifest = Manifest {
         name: campaign.name.clone(),
         version: env!("CARGO_PKG_VERSION").to_string(),
@@ -171,10 +181,7 @@ pub fn run_on(
         campaign_blake3: campaign_hash(campaign),
         campaign: campaign.text.clone(),
         overlay: campaign.overlay.clone(),
-        robot: match &campaign.agent {
-            Agent::Uav(_) => None,
-            Agent::Biped(biped) => Some(biped.file.text.clone()),
-        },
+        robot: campaign.agent.file().map(|file| file.text.clone()),
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,
@@ -192,6 +199,20 @@ pub fn run_on(
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
     Ok(Findings { results, manifest })
+}
+
+/// Writes all but the manifest; returns the time that it took, s.
+fn write_tables(
+    found: Found<'_>,
+    gains: &GainSet,
+    csv: bool,
+    out: &OutputDir,
+) -> Result<f64, RunError> {
+    let start = Instant::now();
+    out.begin()?;
+    tables::write(found, csv, out)?;
+    out.write("gains.json", &pretty(&gains.to_file(found.campaign))?)?;
+    Ok(start.elapsed().as_secs_f64())
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.
@@ -214,17 +235,18 @@ fn unless_more_is_there(
     Ok(())
 }
 
-/// The cross-check of a flight: of its first leg, on the engine that flew it.
+/// The cross-check of a simulation: of its first segment, on the engine that simulated it; or why there is none though
+/// there should be.
 fn checked(
     campaign: &Campaign,
     gains: &GainSet,
     options: &RunOptions,
     gpu: Option<&Gpu>,
-    flight: &Simulation,
+    simulation: &Simulation,
     count: Option<u32>,
-) -> Result<Option<CrossCheck>, GpuError> {
-    let Some(segment) = flight.segments.first() else {
-        return Ok(None);
+) -> (Option<CrossCheck>, Option<String>) {
+    let Some(segment) = simulation.segments.first() else {
+        return (None, None);
     };
     let default = match segment.engine {
         Engine::Gpu { .. } => GPU_CROSS_CHECK,
@@ -232,12 +254,15 @@ fn checked(
     };
     let count = count.unwrap_or(default);
     // A GPU that failed is gone; under `auto` its note says that its episodes are not checked.
-    if count == 0 || flight.segments.len() > 1 {
-        return Ok(None);
+    if count == 0 || simulation.segments.len() > 1 {
+        return (None, None);
     }
-    let scores = &flight.tables.scores;
+    let scores = &simulation.tables.scores;
     let check = || cross_check(campaign, gains, options, segment, scores, gpu, count);
-    flight.pool.install(check).map(Some)
+    match simulation.pool.install(check) {
+        Ok(check) => (Some(check), None),
+        Err(error) => (None, Some(error.to_string())),
+    }
 }
 
 fn pretty(value: &impl serde::Serialize) -> Result<Vec<u8>, serde_json::Error> {

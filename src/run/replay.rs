@@ -44,7 +44,7 @@ pub enum ReplayError {
     },
 }
 
-/// An episode flown again.
+/// An episode simulated again.
 #[derive(Debug)]
 pub struct Replay {
     /// The run's campaign.
@@ -53,7 +53,7 @@ pub struct Replay {
     pub episode: u32,
     /// Which of the campaign's controllers was asked for.
     pub controller: usize,
-    /// Why it was flown in double precision on the CPU, if what flew the run is not to be had here.
+    /// Why it was simulated in double precision on the CPU, if what simulated the run is not to be had here.
     pub stand_in: Option<String>,
     /// How each agent ended; equal to the run's rows, bit by bit in the same arithmetic.
     pub outcomes: Vec<AgentOutcome>,
@@ -61,7 +61,7 @@ pub struct Replay {
     pub snapshots: Vec<Snapshot>,
     /// The same episode under the campaign's other controllers, in its order, to look at side by side.
     pub others: Vec<OtherController>,
-    /// What inequality (24) says about it, `[agent][channel]`, from a flight in double precision on the CPU.
+    /// What inequality (24) says about it, `[agent][channel]`, from an episode in double precision on the CPU.
     pub attenuations: Attenuations,
 }
 
@@ -76,7 +76,7 @@ pub struct OtherController {
     pub snapshots: Vec<Snapshot>,
 }
 
-/// Flies an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and
+/// Simulates an episode of a run under one of its controllers again, on the run's backend and with the run's gains, and
 /// under the campaign's other controllers beside it, and shows it every `interval_s` (10 ms, or as near as the step
 /// allows).
 ///
@@ -110,7 +110,7 @@ pub fn replay(
             .map(|controller| simulate_one(precision, simd, controller, every))
             .collect()
     };
-    // The reference, where what flew the run is not to be had.
+    // The reference, where what simulated the run is not to be had.
     let stand_in = |reason: String| (simulate(Precision::F64, None), Some(reason));
     let (simulated, stand_in) = match segment.map(|segment| &segment.engine) {
         Some(Engine::Gpu { adapter, .. }) => {
@@ -148,9 +148,9 @@ pub fn replay(
         snapshots,
         ..
     } = others.remove(index);
-    let witness = AttenuationAnalysis::new(&campaign, &gains, index);
+    let analysis = AttenuationAnalysis::new(&campaign, &gains, index);
     let attenuations =
-        witness.of_episode(episode, || simulate_one(Precision::F64, None, index, 1).1);
+        analysis.of_episode(episode, || simulate_one(Precision::F64, None, index, 1).1);
     Ok(Replay {
         campaign,
         episode,
@@ -192,7 +192,7 @@ fn quoted(word: &str) -> String {
 /// How each agent ended, and what it showed.
 type Trajectory = (Vec<AgentOutcome>, Vec<Snapshot>);
 
-/// Flies under all controllers on the adapter of the run, or says why that cannot be.
+/// Simulates under all controllers on the adapter of the run, or says why that cannot be.
 fn on_gpu(
     adapter: &Adapter,
     campaign: &Campaign,

@@ -26,10 +26,10 @@ pub const RMSE_LIMIT: f64 = 1e-4;
 /// GPU, costs up to 2e-6 m of the smallest errors (1 cm over short times), which is more than 1e-4 of them. Together
 /// the limits let 5e-6 m pass, a fortieth of [`ERROR_LIMIT`].
 pub const RMSE_FLOOR: f64 = 0.05;
-/// By how much the feedback gains are raised in a flight that shows how sensitive another is, relative: what single
+/// By how much the feedback gains are raised in an episode that shows how sensitive another is, relative: what single
 /// precision loses over some hundred operations, in every step.
 const NUDGE: f64 = 1e-6;
-/// A flight is sensitive if such a nudge, in double precision, moves it by more than this share of the limits. Others
+/// An episode is sensitive if such a nudge, in double precision, moves it by more than this share of the limits. Others
 /// move by some hundredths of them, as errors change with the gains. A loop that a limit of rate, a delay or lost
 /// messages keep in a bounded oscillation without a period is sensitive: there every difference grows, and no two
 /// number formats agree for long, however right both are.
@@ -45,7 +45,7 @@ const WHOLE: usize = 4;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CrossCheck {
-    /// Episodes that were flown again under every controller.
+    /// Episodes that were simulated again under every controller.
     pub episodes: Vec<u32>,
     /// Pairs of episode and controller whose errors were compared: neither backend fails or saturates in them.
     pub compared: usize,
@@ -61,7 +61,7 @@ pub struct CrossCheck {
     pub verdicts_differ: usize,
     /// Those among them that fail on one backend only and are not near a threshold on either.
     pub verdicts_differ_clearly: usize,
-    /// Pairs that give other numbers than those in the tables when they fly again on the run's own engine.
+    /// Pairs that give other numbers than those in the tables when they are simulated again on the run's own engine.
     pub not_repeated: usize,
     /// What inequality (24) says about these episodes, by controller and channel group; empty in runs of older
     /// versions.
@@ -70,7 +70,7 @@ pub struct CrossCheck {
 }
 
 impl CrossCheck {
-    /// Why flights are left out as sensitive.
+    /// Why episodes are left out as sensitive.
     pub const SENSITIVE: &str = "so sensitive that gains a millionth larger move them too";
 
     /// Whether the backends agree within the limits.
@@ -83,8 +83,8 @@ impl CrossCheck {
     }
 }
 
-/// Flies `count` random episodes of a leg again, on its own engine and on the CPU in double precision: the former must
-/// give the numbers of the tables, `scores`, to the last digit, the latter nearly the same.
+/// Simulates `count` random episodes of a segment again, on its own engine and on the CPU in double precision: the
+/// former must give the numbers of the tables, `scores`, to the last digit, the latter nearly the same.
 ///
 /// # Errors
 /// If the GPU fails.
@@ -157,14 +157,14 @@ fn attenuation(
     let controllers = gains.controllers.iter().enumerate();
     let certified = controllers.filter(|(_, controller)| controller.is_certified());
     let of_controller = |(index, _)| {
-        let witness = AttenuationAnalysis::new(campaign, gains, index);
+        let analysis = AttenuationAnalysis::new(campaign, gains, index);
         let of_episode =
-            |&episode: &u32| witness.of_episode(episode, || reference.trace(episode, index, 1).1);
+            |&episode: &u32| analysis.of_episode(episode, || reference.trace(episode, index, 1).1);
         let chunks = episodes.chunks(WHOLE);
-        let flights: Vec<Attenuations> = chunks
+        let attenuations: Vec<Attenuations> = chunks
             .flat_map(|chunk| chunk.par_iter().map(of_episode).collect::<Vec<_>>())
             .collect();
-        witness.by_group(&flights)
+        analysis.by_group(&attenuations)
     };
     certified.flat_map(of_controller).collect()
 }
@@ -266,7 +266,7 @@ fn choose(seed: u64, segment: &Segment, count: u32) -> Vec<u32> {
 }
 
 impl CrossCheck {
-    /// Takes in a flight, of which `nudged` is the reference with slightly larger gains.
+    /// Takes in an episode, of which `nudged` is the reference with slightly larger gains.
     fn take(
         &mut self,
         campaign: &Campaign,
@@ -318,7 +318,7 @@ impl CrossCheck {
     }
 }
 
-/// How far two flights of an episode are from each other.
+/// How far two simulations of an episode are from each other.
 #[derive(Debug)]
 struct Difference {
     /// Largest difference of e at an instant, or of max |e|, m or rad.
@@ -411,9 +411,9 @@ mod tests {
         let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
         let expected = trace(&reference, 0, 0, 10);
         let off_by = |difference: f64| {
-            let mut flight = expected.clone();
-            flight.errors[40][1][2] += difference;
-            flight
+            let mut moved = expected.clone();
+            moved.errors[40][1][2] += difference;
+            moved
         };
         let taken = |found: &Traced, nudged: &dyn Fn() -> Traced| {
             let mut check = CrossCheck::default();
@@ -428,7 +428,7 @@ mod tests {
         assert!(!wrong.holds() && wrong.compared == 1 && wrong.sensitive == 0);
         let sensitive = taken(&far, &|| off_by(0.11 * ERROR_LIMIT));
         assert!(sensitive.holds() && sensitive.compared == 0 && sensitive.sensitive == 1);
-        // The same of verdicts that differ; but not of a flight that leaves the numbers.
+        // The same of verdicts that differ; but not of an episode that leaves the numbers.
         let mut failed = expected.clone();
         failed.outcomes[1].channels[2].max_abs = 9.0;
         failed.outcomes[1].failed_step = Some(2000);

@@ -1,4 +1,4 @@
-//! Flying all episodes of a campaign on the backends that are to be had, into tables.
+//! Simulating all episodes of a campaign on the backends that are to be had, into tables.
 
 pub mod attenuation;
 pub mod cross_check;
@@ -31,7 +31,7 @@ const CPU_BATCH: u32 = 2048;
 /// threads.
 const LOOK_BATCH: u32 = 256;
 
-/// Where the episodes are to fly.
+/// Where the episodes are to be simulated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Backend {
     /// On a hardware GPU if there is one, else, and if it fails, on the CPU.
@@ -45,12 +45,12 @@ pub enum Backend {
     Cpu,
 }
 
-/// How a campaign is to be flown.
+/// How a campaign is to be simulated.
 #[derive(Debug, Clone)]
 pub struct RunOptions {
     /// Where.
     pub backend: Backend,
-    /// Number format of the episode loop; double precision flies on the CPU.
+    /// Number format of the episode loop; double precision is simulated on the CPU.
     pub precision: Precision,
     /// Layout of the CPU's single-precision episodes; the widest of this processor if not given.
     pub simd: Option<Simd>,
@@ -74,7 +74,7 @@ impl RunOptions {
     }
 }
 
-/// Why nothing could be flown.
+/// Why nothing could be simulated.
 #[derive(Debug, Error)]
 pub enum SimulationError {
     /// No threads.
@@ -93,14 +93,14 @@ pub enum SimulationError {
     Gpu(GpuError),
 }
 
-/// Consecutive episodes, and what flew them.
+/// Consecutive episodes, and what simulated them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
     /// The first episode.
     pub first: u32,
     /// How many.
     pub episodes: u32,
-    /// What flew them.
+    /// What simulated them.
     #[serde(flatten)]
     pub engine: Engine,
 }
@@ -143,7 +143,7 @@ impl fmt::Display for Engine {
     }
 }
 
-/// The tables of a flown campaign, and how they came about.
+/// The tables of a simulated campaign, and how they came about.
 pub struct Simulation {
     /// The tables.
     pub tables: Tables,
@@ -151,25 +151,25 @@ pub struct Simulation {
     pub stopping: StoppingRule,
     /// Times so far.
     pub times: Times,
-    /// What flew, in the order of the episodes; together they are the first episodes of the campaign.
+    /// What simulated them, in the order of the episodes; together they are the first episodes of the campaign.
     pub segments: Vec<Segment>,
     /// What the user should know of the choice of the backend.
     pub notes: Vec<String>,
     /// Why episodes are missing, if they are.
     pub interrupted: Option<GpuError>,
-    /// The threads that flew.
+    /// The threads that were used.
     pub pool: ThreadPool,
 }
 
 impl Simulation {
-    /// Episodes that were flown.
+    /// Episodes that were simulated.
     #[must_use]
     pub fn episodes(&self) -> u32 {
         self.segments.iter().map(|segment| segment.episodes).sum()
     }
 }
 
-/// The device to fly on, if any, and what there is to know about the choice.
+/// The device to use, if any, and what there is to know about the choice.
 ///
 /// # Errors
 /// If a GPU is asked for and is not to be had.
@@ -200,11 +200,12 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
     Ok((Some(opened), Vec::new()))
 }
 
-/// Flies a campaign with gains at hand, on a GPU if one is given; `done` is told of finished episodes.
+/// Simulates a campaign with gains at hand, on a GPU if one is given; `done` is told of finished episodes.
 ///
 /// # Errors
-/// If the threads cannot be started, or a GPU is asked for and flies nothing. A GPU that fails later leaves the
-/// episodes that it finished: the CPU flies the others if it may, else they are missing and the flight says why.
+/// If the threads cannot be started, or a GPU is asked for and simulates nothing. A GPU that fails later leaves the
+/// episodes that it finished: the CPU simulates the others if it may, else they are missing and the simulation says
+/// why.
 pub fn simulate(
     campaign: &Campaign,
     gains: &GainSet,
@@ -217,7 +218,7 @@ pub fn simulate(
         .num_threads(threads)
         .build()
         .map_err(|source| SimulationError::Threads { threads, source })?;
-    let mut flight = Simulation {
+    let mut simulation = Simulation {
         tables: Tables::new(campaign),
         stopping: StoppingRule::new(campaign),
         times: Times::default(),
@@ -229,31 +230,31 @@ pub fn simulate(
     // Of a batch that a GPU does not finish, episodes were told as done already.
     let told = AtomicU32::new(0);
     if let Some(gpu) = gpu {
-        let failure = flight.on_gpu(gpu, campaign, gains, options, &|episodes| {
+        let failure = simulation.on_gpu(gpu, campaign, gains, options, &|episodes| {
             told.fetch_add(episodes, Ordering::Relaxed);
             done(episodes);
         });
-        let simulated = flight.episodes();
+        let simulated = simulation.episodes();
         told.fetch_sub(simulated, Ordering::Relaxed);
         match failure {
             None => {}
-            Some(error) if options.backend == Backend::Auto => flight.notes.push(format!(
+            Some(error) if options.backend == Backend::Auto => simulation.notes.push(format!(
                 "the GPU failed after {simulated} of {} episodes, which are not cross-checked, and the CPU simulated the others: {error}",
                 campaign.episodes
             )),
             Some(error) if simulated == 0 => return Err(SimulationError::Gpu(error)),
             Some(error) => {
-                flight.interrupted = Some(error);
-                return Ok(flight);
+                simulation.interrupted = Some(error);
+                return Ok(simulation);
             }
         }
     }
-    flight.on_cpu(campaign, gains, options, &|episodes| {
+    simulation.on_cpu(campaign, gains, options, &|episodes| {
         let take = |told: u32| Some(told - told.min(episodes));
         let told = told.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
         done(episodes - told.unwrap_or_default().min(episodes));
     });
-    Ok(flight)
+    Ok(simulation)
 }
 
 impl Simulation {
@@ -262,7 +263,7 @@ impl Simulation {
         u32::try_from(self.tables.scores.episodes()).unwrap_or(u32::MAX)
     }
 
-    /// Flies on a GPU, batch by batch, until all are done or it fails.
+    /// Simulates on a GPU, batch by batch, until all are done or it fails.
     fn on_gpu(
         &mut self,
         gpu: &Gpu,
@@ -282,7 +283,7 @@ impl Simulation {
         let (mut next, mut failure) = (0, None);
         let enough = AtomicBool::new(false);
         let seen = &enough;
-        // The tables take in a batch while the next one flies; at most one waits, so memory stays small.
+        // The tables take in a batch while the next one is simulated; at most one waits, so memory stays small.
         std::thread::scope(|scope| {
             let (sender, batches) = mpsc::sync_channel::<Vec<EpisodeResult>>(1);
             let filling = scope.spawn(move || {
@@ -312,7 +313,7 @@ impl Simulation {
             let filled = filling.join();
             times.statistics_s += filled.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         });
-        // What was flown beyond the end is in no table.
+        // What was simulated beyond the end is in no table.
         let episodes = self.recorded();
         if episodes > 0 {
             self.segments.push(Segment {
@@ -328,7 +329,7 @@ impl Simulation {
         failure.filter(|_| !self.stopping.is_done())
     }
 
-    /// Flies the episodes that are left on the CPU.
+    /// Simulates the episodes that are left on the CPU.
     fn on_cpu(
         &mut self,
         campaign: &Campaign,
@@ -345,7 +346,7 @@ impl Simulation {
         self.times.loop_s += start.elapsed().as_secs_f64();
         let batch = match &campaign.stop {
             None => CPU_BATCH,
-            // Little is flown in vain if batches are as short as the threads and the looks allow.
+            // Little is simulated in vain if batches are as short as the threads and the looks allow.
             Some(stop) => stop.every.clamp(LOOK_BATCH, CPU_BATCH),
         };
         let mut next = first;
@@ -369,7 +370,7 @@ impl Simulation {
     }
 }
 
-/// Adds flown episodes to the tables, until the watch has seen enough; the time that it took, s.
+/// Adds simulated episodes to the tables, until the stopping rule has seen enough; the time that it took, s.
 fn fill(
     tables: &mut Tables,
     stopping: &mut StoppingRule,

@@ -60,7 +60,7 @@ pub const AGREEMENT_LIMIT: f64 = 1e-3;
 pub struct ChannelSynthesis {
     /// What was asked for.
     pub design: ChannelDesign,
-    /// The fault-tolerant controller from the matrix inequalities: these gains fly.
+    /// The fault-tolerant controller from the matrix inequalities: these gains are used.
     pub ftc: ControllerGains,
     /// The same from the Riccati equations, for comparison.
     pub ftc_riccati: ControllerGains,

@@ -1,4 +1,4 @@
-//! The shipped designs: Section V of the paper, and one that flies the underactuated UAV.
+//! The shipped designs: Section V of the paper, and one for the underactuated UAV.
 
 use super::design::{ChannelDesign, geometric_q2};
 use super::smoothing::Smoothing;

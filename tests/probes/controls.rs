@@ -110,19 +110,19 @@ const CONTROLS: &[Control] = &[
         "stepped",
     ),
     control(
-        "controller",
+        "observer_feedback",
         "injected(4u, innovation, (f1 - f1_before) * s.z)",
         "injected(4u, innovation, (f1_before - f1) * s.z)",
         "step_channel",
     ),
     control(
-        "controller",
+        "observer_feedback",
         "fma(unexplained, b.y, seen_rate - rate_hat)",
         "fma(unexplained, b.x, seen_rate - rate_hat)",
         "step_channel",
     ),
     control(
-        "controller",
+        "observer_feedback",
         "uniforms.gains[KINDS - 1u].smoothing, is_attitude()",
         "uniforms.gains[0].smoothing, is_attitude()",
         "gains",
@@ -340,13 +340,13 @@ const CONTROLS: &[Control] = &[
         "slot",
     ),
     control(
-        "controller",
+        "observer_feedback",
         "integrand = fma(sensor_fault, b.x, seen_error);",
         "integrand = seen_error;",
         "step_channel",
     ),
     control(
-        "controller",
+        "observer_feedback",
         "seen_rate - rate_hat",
         "rate - rate_hat",
         "step_channel",
@@ -453,7 +453,7 @@ fn val_every_change_is_of_a_text_that_there_is() {
     let files: BTreeSet<&str> = controls().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        17,
+        18,
         "each file of shaders/ that has functions, and the constants: {files:?}"
     );
     let texts = shapes::probed().map(|shape| shape.text());

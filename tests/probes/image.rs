@@ -6,7 +6,7 @@ use super::tracked::Tracked;
 use crate::backend::gpu::layout::{N_EXTREMES, N_SUMS};
 use crate::backend::gpu::signals::Lists;
 use crate::model::agent::Agent;
-use crate::model::controller::FTC_STATES;
+use crate::model::controller::observer_feedback::FTC_STATES;
 use crate::model::exogenous::delay_line::DelayLine;
 use crate::model::exogenous::lists::Item;
 

@@ -39,8 +39,9 @@ fn the_loop_over_a_coupled_team_counts_in_each_of_four_stages() {
 /// there. Where shapes differ, the most.
 const LOOPS: &[(&str, usize)] = &[
     ("carry_command", 1),
+    ("evaluate_command", 1),
     ("exogenous_inputs_begin", 1),
-    ("exogenous_inputs_evaluate", 5),
+    ("exogenous_inputs_evaluate", 4),
     ("exogenous_inputs_hold", 4),
     ("exogenous_inputs_remember", 1),
     ("finish", 3),

@@ -13,8 +13,10 @@ use crate::backend::gpu::uniforms::{
 use crate::campaign::Campaign;
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
-use crate::model::controller::{FTC_STATES, OBSERVER};
-use crate::model::episode::{Controller, ControllerKind, Model};
+use crate::model::controller::OBSERVER;
+use crate::model::controller::kinds::{Controller, Family};
+use crate::model::controller::observer_feedback::FTC_STATES;
+use crate::model::episode::Model;
 use crate::model::exogenous::lists::LISTS;
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
@@ -165,8 +167,7 @@ fn val_kept_metrics_have_the_names_and_the_order_of_their_twins() {
 fn val_the_setting_that_is_sent_fills_its_struct() {
     let world = World::<_, 6, 10, 4>::new(shapes::probed()[5].clone(), shapes::thrust());
     let controller = Controller {
-        gains: vec![world.gains[0], world.gains[5]],
-        kind: ControllerKind::Ftc,
+        family: Family::FaultTolerant(vec![world.gains[0], world.gains[5]]),
     };
     let mut plants = 0;
     for name in [

@@ -1,10 +1,13 @@
-//! Probes of shaders/integrator.wgsl, controller.wgsl and plant_uav.wgsl: what a stage of a step is made of.
+//! Probes of shaders/integrator.wgsl, observer_feedback.wgsl and plant_uav.wgsl: what a stage of a step is made of.
 
 use super::harness::{Compared, Expected, Lab};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
-use crate::model::controller::{Measured, fault_estimates, feedback, injected, step_channel};
+use crate::model::controller::Measured;
+use crate::model::controller::observer_feedback::{
+    fault_estimates, feedback, injected, step_channel,
+};
 use crate::model::integrator::Step;
 use crate::model::plant::uav::Attitude;
 use crate::model::plant::{Inputs, ReferenceRow, Response};

@@ -51,7 +51,7 @@ macro_rules! over_shapes {
                         &World::<_, 6, 6, 0>::new(shape, shapes::leg::<false>()),
                     ),
                 });
-                // A changed shader need not be flown on.
+                // A changed shader is simulated no further.
                 if !all.wrong.is_empty() {
                     break;
                 }
@@ -286,7 +286,7 @@ pub(super) const SIGNALS: &[Probe] = &[
     ),
     probe!(
         "exogenous_inputs_evaluate",
-        ["exogenous_inputs_evaluate"],
+        ["exogenous_inputs_evaluate", "evaluate_command"],
         over_shapes!(exogenous::evaluated)
     ),
     probe!(

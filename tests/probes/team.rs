@@ -8,7 +8,7 @@ use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::backend::gpu::layout::NEVER;
 use crate::model::agent::{Agent, Coupling, Team};
-use crate::model::controller::fault_estimates;
+use crate::model::controller::observer_feedback::{ChannelGains, fault_estimates};
 use crate::model::exogenous::actuator::Actuator;
 use crate::model::plant::{ReferenceRow, Response};
 use crate::model::team::finite;
@@ -71,7 +71,7 @@ pub(super) fn team_sum<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
         let sum = at_stage!(
             scene.stage,
             STAGE,
-            scene.group.team_sum::<P, STAGE>(&setting, &rows)
+            scene.group.team_sum::<P, _, STAGE>(&setting, &rows)
         );
         scene.each(|scene, a, c| scene.answer_number(a, c, sum[c]));
     })
@@ -87,8 +87,8 @@ pub(super) fn responses<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
         let setting = world.setting(&rows);
         let group = &mut scene.group;
         let sum = at_stage!(scene.stage, STAGE, {
-            group.place_agents::<P, STAGE>(&setting, &rows);
-            group.team_sum::<P, STAGE>(&setting, &rows)
+            group.place_agents::<P, _, STAGE>(&setting, &rows);
+            group.team_sum::<P, _, STAGE>(&setting, &rows)
         });
         let team = Team {
             sum,
@@ -100,7 +100,7 @@ pub(super) fn responses<P: Flies<NC, NX>, const NC: usize, const NS: usize, cons
             let response = at_stage!(
                 scene.stage,
                 STAGE,
-                agent.respond::<P, STAGE>(&setting, rows, &team, a, scene.step)
+                agent.respond::<P, _, STAGE>(&setting, rows, &team, a, scene.step)
             );
             for c in 0..NC {
                 answer_response(scene, (a, c), &response);
@@ -134,7 +134,7 @@ pub(super) fn seen<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX:
                 (
                     agent.motion::<P, STAGE>(&world.plant, rows),
                     agent.distortion::<P, STAGE>(&world.plant, rows),
-                    agent.feedback::<P, STAGE>(&setting, scene.step)
+                    agent.feedback::<P, _, STAGE>(&setting, scene.step)
                 )
             );
             for c in 0..NC {
@@ -224,9 +224,9 @@ pub(super) fn observed<P: Flies<NC, NX>, const NC: usize, const NS: usize, const
             let off = std::array::from_fn(|c| [9, 10].map(|k| scene.number(a, c, k)));
             let agent = &mut scene.group.agents[a];
             if step >= 500 {
-                agent.observe::<P, true>(&world.limits, &response, &off, step);
+                agent.observe::<P, ChannelGains<f32>, true>(&world.limits, &response, &off, step);
             } else {
-                agent.observe::<P, false>(&world.limits, &response, &off, step);
+                agent.observe::<P, ChannelGains<f32>, false>(&world.limits, &response, &off, step);
             }
         }
     })
@@ -345,9 +345,9 @@ pub(super) fn stages<P: Flies<NC, NX>, const NC: usize, const NS: usize, const N
             scene.stage,
             STAGE,
             if settled {
-                group.stage::<P, STAGE, true>(&setting, &rows, &h);
+                group.stage::<P, _, STAGE, true>(&setting, &rows, &h);
             } else {
-                group.stage::<P, STAGE, false>(&setting, &rows, &h);
+                group.stage::<P, _, STAGE, false>(&setting, &rows, &h);
             }
         );
     })
@@ -416,15 +416,15 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             scene.next_change[a][c] = Expected::Bits(next);
         });
         let group = &mut scene.group;
-        group.place_agents::<P, 0>(&setting, row);
+        group.place_agents::<P, _, 0>(&setting, row);
         let team = Team {
-            sum: group.team_sum::<P, 0>(&setting, row),
+            sum: group.team_sum::<P, _, 0>(&setting, row),
             places: &group.places.clone(),
             size: world.shape.team,
         };
         for (a, rows) in row.chunks_exact(NC * P::ROWS).enumerate() {
             let agent = &scene.group.agents[a];
-            let response = agent.respond::<P, 0>(&setting, rows, &team, a, step);
+            let response = agent.respond::<P, _, 0>(&setting, rows, &team, a, step);
             let off = agent.distortion::<P, 0>(&world.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&world.plant, rows);
             for c in 0..NC {

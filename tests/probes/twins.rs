@@ -54,8 +54,8 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         &[("at", "stepped_at"), ("take", "stepped_take")],
     ),
     (
-        "controller",
-        include_str!("../../src/model/controller.rs"),
+        "observer_feedback",
+        include_str!("../../src/model/controller/observer_feedback.rs"),
         &[
             ("measured", "channel_gains_measured"),
             ("feedback", "feedback"),
@@ -292,8 +292,8 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "a row of the table is one value",
     ),
     (
-        &["true_state", "error_estimate", "step_error"],
-        "a controller without an observer flies on the CPU alone",
+        &["start", "step", "error_estimate"],
+        "the loop asks a family of controllers; the shaders have one",
     ),
     (
         &["outcomes", "is_finite", "step_number", "finite_step"],
@@ -448,7 +448,7 @@ fn val_every_shader_function_has_a_twin_and_a_probe() {
     });
     let functions: BTreeSet<&str> = functions.collect();
     assert_eq!(functions, known, "shaders (left) and the tables of twins");
-    // Entry points cannot be called; whole episodes fly through them.
+    // Entry points cannot be called; whole episodes run them.
     assert_eq!(functions, probed, "shaders (left) and the table of probes");
     assert!(ENTRIES.iter().all(|entry| !functions.contains(entry)));
 }

@@ -9,7 +9,7 @@ use crate::backend::gpu::layout::{self, NEVER, Span};
 use crate::backend::gpu::shape::Shape;
 use crate::backend::gpu::uniforms::{GainsUniforms, PlantUniforms, SettingHead};
 use crate::model::agent::GroupParameters;
-use crate::model::controller::ChannelGains;
+use crate::model::controller::observer_feedback::ChannelGains;
 use crate::model::integrator::Step;
 use crate::model::lanes::MAX_WIDTH;
 use crate::model::metric::Limits;
@@ -155,10 +155,10 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
     pub(super) fn setting<'t>(
         &self,
         table: &'t [ReferenceRow<f32>],
-    ) -> GroupParameters<'t, P, f32, NC> {
+    ) -> GroupParameters<'t, P, ChannelGains<f32>, f32, NC> {
         GroupParameters {
             plant: self.plant,
-            gains: self.gains,
+            controller: self.gains,
             limits: self.limits,
             coupling: self.shape.coupling,
             measured_integral: self.shape.measured_integral,

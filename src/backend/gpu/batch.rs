@@ -12,7 +12,8 @@ use super::uniforms::setting;
 use crate::backend::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::{Episode, draw};
-use crate::model::episode::{AgentOutcome, Controller, ControllerKind, Model};
+use crate::model::controller::kinds::{Controller, Family};
+use crate::model::episode::{AgentOutcome, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -26,7 +27,7 @@ const FIRST_STEPS: u32 = 4;
 /// Samples of a trace between two read-backs.
 const SAMPLES: u32 = 64;
 
-/// A campaign's controllers, ready to fly on a GPU.
+/// A campaign's controllers, ready for a GPU.
 pub struct GpuSimulator<'g> {
     gpu: &'g Gpu,
     model: Model<f32>,
@@ -77,7 +78,8 @@ impl<'g> GpuSimulator<'g> {
         let mut most_steps = u32::MAX;
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
-                let shape = shape(gpu, campaign, part, gains.kind == ControllerKind::Ftc)?;
+                let ftc = matches!(gains.family, Family::FaultTolerant(_));
+                let shape = shape(gpu, campaign, part, ftc)?;
                 most_steps = most_steps.min(shape.most_steps(gpu)?);
                 // The axes mostly share their shaders, and the PIDs do.
                 let known = groups.iter().find(|group| group.shape == shape);
@@ -146,8 +148,8 @@ impl<'g> GpuSimulator<'g> {
         self.times
     }
 
-    /// Flies a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told how
-    /// many episodes' worth of steps came to an end.
+    /// Simulates a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told
+    /// how many episodes' worth of steps came to an end.
     ///
     /// # Errors
     /// If the device fails; nothing of the batch is known then.
@@ -182,7 +184,7 @@ impl<'g> GpuSimulator<'g> {
         Ok(simulated)
     }
 
-    /// Flies some episodes and shows them every `every` steps, from the start to the end; returns how each ended,
+    /// Simulates some episodes and shows them every `every` steps, from the start to the end; returns how each ended,
     /// `[episode]`. The episodes may be any of the campaign's, as many as a batch holds.
     ///
     /// # Errors

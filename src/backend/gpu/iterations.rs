@@ -11,7 +11,7 @@ use super::device::Gpu;
 use super::layout::{N_EXTREMES, N_SUMS, SHOWN_WORDS};
 use super::shape::Shape;
 use crate::model::agent::Coupling;
-use crate::model::controller::FTC_STATES;
+use crate::model::controller::observer_feedback::FTC_STATES;
 use crate::model::exogenous::lists::{LISTS, ListShape, SignalLists};
 use crate::random::philox::ROUNDS;
 

@@ -31,7 +31,7 @@ pub use tuning::Tuning;
 use crate::util::suggest::did_you_mean;
 use thiserror::Error;
 
-/// Why a GPU cannot fly episodes, or cannot go on.
+/// Why a GPU cannot simulate episodes, or cannot go on.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GpuError {
     /// There is no hardware GPU.

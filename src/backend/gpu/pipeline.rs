@@ -14,7 +14,7 @@ pub(super) const WORKGROUP: usize = 256;
 /// Episodes that a workgroup has at most.
 pub(super) const MAX_LANES: usize = 64;
 /// Episodes that a batch has at most: enough to fill the largest cards several times, few enough that the tables of one
-/// batch are filled while the next one flies.
+/// batch are filled while the next one is simulated.
 pub(super) const MAX_BATCH: u32 = 16_384;
 
 /// A group of channels under one controller, and its shaders.

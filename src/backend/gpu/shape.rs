@@ -2,7 +2,7 @@
 
 use super::signals::Lists;
 use crate::model::agent::Coupling;
-use crate::model::controller::FTC_STATES;
+use crate::model::controller::observer_feedback::FTC_STATES;
 use crate::model::plant::kinds::PlantKind;
 
 /// What the text of a group's shader depends on.

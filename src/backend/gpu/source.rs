@@ -6,7 +6,8 @@ use super::shape::Shape;
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::draw::MEMBERS_PER_AGENT;
 use crate::model::agent::Coupling;
-use crate::model::controller::{FTC_STATES, OBSERVER};
+use crate::model::controller::OBSERVER;
+use crate::model::controller::observer_feedback::FTC_STATES;
 use crate::model::exogenous::vortex::{JET_PEAK, JET_SPREAD};
 use crate::model::lanes::math;
 use crate::model::plant::kinds::{FILTER_STATES, PlantKind};
@@ -21,7 +22,7 @@ const BELOW: [&str; 6] = [
     include_str!("../../../shaders/math.wgsl"),
     include_str!("../../../shaders/philox.wgsl"),
     include_str!("../../../shaders/integrator.wgsl"),
-    include_str!("../../../shaders/controller.wgsl"),
+    include_str!("../../../shaders/observer_feedback.wgsl"),
     include_str!("../../../shaders/plant.wgsl"),
 ];
 /// The files of the UAV.

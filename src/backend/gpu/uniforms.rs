@@ -4,8 +4,8 @@
 use super::layout::word;
 use crate::agent::HEIGHT;
 use crate::campaign::Campaign;
-use crate::model::controller::ChannelGains;
-use crate::model::episode::Controller;
+use crate::model::controller::kinds::Controller;
+use crate::model::controller::observer_feedback::ChannelGains;
 use crate::model::integrator::Step;
 use crate::model::metric::Limits;
 use crate::model::plant::biped::LegPlant;
@@ -43,7 +43,7 @@ pub(crate) struct LegPlantUniforms {
     pub(crate) max_torque: [f32; 8],
 }
 
-/// Twin of `ChannelGains` in shaders/controller.wgsl.
+/// Twin of `ChannelGains` in shaders/observer_feedback.wgsl.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct GainsUniforms {
@@ -223,7 +223,11 @@ pub(crate) fn setting(
             0.0,
         ]));
     }
-    for (group, gains) in campaign.channel_groups().iter().zip(&controller.gains) {
+    for (group, gains) in campaign
+        .channel_groups()
+        .iter()
+        .zip(controller.observer_gains())
+    {
         if part
             .channels
             .clone()

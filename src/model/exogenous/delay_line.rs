@@ -3,7 +3,7 @@
 //!
 //! One sample per step, taken at its start, is enough: within a step a delayed signal goes on a straight line from
 //! sample to sample, and a command that is limited in its rate may leave the last sample by so much per time. At step 0
-//! there is no past, so nothing is recalled or frozen yet, and an actuator begins where it is wanted.
+//! there is no past, so nothing is recalled or frozen yet, and an actuator begins at what is demanded.
 
 #![expect(
     clippy::needless_range_loop,

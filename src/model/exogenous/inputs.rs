@@ -76,7 +76,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         }
     }
 
-    /// Whether another command may arrive at the actuators than the one that is wanted now.
+    /// Whether another command may arrive at the actuators than the one that is demanded now.
     pub(crate) fn carries(&self) -> bool {
         self.hold_steps > 1
             || !self.lists.command_rings.is_empty()

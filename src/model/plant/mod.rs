@@ -37,7 +37,8 @@ pub(crate) struct Inputs<'a, L: Lane, const NC: usize> {
 pub(crate) struct Response<L, const NC: usize, const NX: usize> {
     /// x'' - r''.
     pub(crate) error_acceleration: [L; NC],
-    /// The feedback that was really commanded, after filter and limits, before any fault: what the observer is told.
+    /// The feedback that was really commanded, after filter and limits, before any fault: the applied feedback of which
+    /// the observer knows.
     pub(crate) applied_feedback: [L; NC],
     /// The command u of (9) after limits, as it sets out.
     pub(crate) sent: [L; NC],

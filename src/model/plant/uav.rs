@@ -59,7 +59,7 @@ impl<R: Real> Axis<R> {
         }
     }
 
-    /// x'' - r'' of this axis, which is channel `c` of its group, the command that is wanted and the one that acts.
+    /// x'' - r'' of this axis, which is channel `c` of its group, the command that is demanded and the one that acts.
     #[inline(always)]
     pub(crate) fn answer<L: Lane<Real = R>, const NC: usize>(
         &self,
@@ -309,7 +309,7 @@ impl<L: Lane> Plant<L, 6, 4> for Thrust<L::Real> {
         let roll_acceleration = (w * (roll_command - roll) - (roll_rate + roll_rate)) * w;
         let pitch_acceleration = (w * (pitch_command - pitch) - (pitch_rate + pitch_rate)) * w;
 
-        // Thrust: demanded, then limited; the acceleration that it can give is what the observer is told.
+        // Thrust: demanded, then limited; the acceleration that it can give is the applied feedback.
         let thrust_demanded = fx.mul_add(fx, fy.mul_add(fy, fz * fz)).sqrt();
         let thrust = clamp(thrust_demanded, zero, L::splat(self.max_thrust));
         excess[2] = thrust_demanded - thrust;

@@ -74,7 +74,7 @@ impl Quantity {
         }
     }
 
-    /// What the flight is compared with.
+    /// What the episode is compared with.
     fn truth(self) -> Option<fn(&ChannelSample) -> f64> {
         match self {
             Self::State => Some(|shown| shown.r),
@@ -93,35 +93,35 @@ impl Quantity {
         }
     }
 
-    /// Whether what is flown is an estimate, which not every controller makes.
+    /// Whether what is simulated is an estimate, which not every controller makes.
     fn is_fault(self) -> bool {
         matches!(self, Self::ActuatorFault | Self::SensorFault)
     }
 }
 
-/// A channel's quantity in one or several flights. The frame is the same whichever flights are shown.
+/// A channel's quantity under one or several controllers. The frame is the same whichever are shown.
 pub(super) fn panel(
-    scene: &EpisodeView<'_>,
+    view: &EpisodeView<'_>,
     quantity: Quantity,
     at: (usize, usize),
     shown: &[ControllerTrace<'_>],
 ) -> (Plot, bool) {
     let (agent, channel) = at;
-    let frame = frame(scene, quantity, at);
+    let frame = frame(view, quantity, at);
     let mut marks = Vec::new();
-    let mut draw = |flight: &ControllerTrace<'_>,
+    let mut draw = |trace: &ControllerTrace<'_>,
                     pick: fn(&ChannelSample) -> f64,
-                    ink: Color,
+                    color: Color,
                     stroke: Stroke| {
         let Some(frame) = frame else {
             return;
         };
-        let mut curve = scene.curve(flight, at, pick);
-        if ink == Color::Truth && quantity == Quantity::State {
-            let left_s = scene.left_s(flight, agent);
+        let mut curve = view.curve(trace, at, pick);
+        if color == Color::Truth && quantity == Quantity::State {
+            let left_s = view.left_s(trace, agent);
             curve.retain(|&(t_s, _)| t_s < left_s);
         }
-        let shown = scene.shown(flight, agent, |k| {
+        let shown = view.shown(trace, agent, |k| {
             curve.get(k).is_some_and(|point| !frame.is_near(point.1))
         });
         let near = curve
@@ -131,7 +131,7 @@ pub(super) fn panel(
         let near: Vec<(f64, f64)> = near.collect();
         marks.push(Mark::Line(
             EpisodeView::thin(&near, frame.fine()),
-            ink,
+            color,
             stroke,
         ));
     };
@@ -143,27 +143,27 @@ pub(super) fn panel(
         draw(first, truth, Color::Truth, truth_stroke);
     }
     // The first is drawn last, above the others.
-    for flight in shown.iter().rev() {
-        let curve = scene.curve(flight, at, quantity.simulated());
+    for trace in shown.iter().rev() {
+        let curve = view.curve(trace, at, quantity.simulated());
         if quantity.is_fault() && curve.iter().all(|(_, value)| *value == 0.0) {
             continue;
         }
-        draw(flight, quantity.simulated(), flight.ink(), Stroke::Solid);
+        draw(trace, quantity.simulated(), trace.color(), Stroke::Solid);
     }
     if let (Some(estimate), Some(first)) = (quantity.estimate(), shown.first()) {
-        draw(first, estimate, scene.estimate_ink(), Stroke::Dashed);
+        draw(first, estimate, view.estimate_ink(), Stroke::Dashed);
     }
-    let robot = matches!(scene.campaign.agent, Agent::Biped(_));
-    let unit = quantity.unit(scene.campaign.unit(channel), robot);
-    let failed = shown.iter().filter_map(|flight| {
-        let t_s = scene.failed_at_s(flight, agent)?;
-        Some((t_s, flight.ink()))
+    let robot = matches!(view.campaign.agent, Agent::Biped(_));
+    let unit = quantity.unit(view.campaign.unit(channel), robot);
+    let failed = shown.iter().filter_map(|trace| {
+        let t_s = view.failed_at_s(trace, agent)?;
+        Some((t_s, trace.color()))
     });
-    let name = &scene.campaign.channels()[channel];
+    let name = &view.campaign.channels()[channel];
     let panel = Plot {
         title: name.to_string(),
         x: Axis {
-            range: Some((0.0, scene.duration_s)),
+            range: Some((0.0, view.duration_s)),
             ..Axis::new("t, s")
         },
         y: Axis {
@@ -171,42 +171,42 @@ pub(super) fn panel(
             ..Axis::new(format!("{}, {unit}", quantity.symbol()))
         },
         marks,
-        spans: scene.windows(agent, channel),
-        levels: limits(scene, quantity, channel),
+        spans: view.windows(agent, channel),
+        levels: limits(view, quantity, channel),
         moments: failed.collect(),
         ..Plot::default()
     };
     (panel, frame.is_some_and(|frame| frame.cut))
 }
 
-/// The frame of a channel's quantity: what every flight showed of it, and its limits.
-fn frame(scene: &EpisodeView<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Frame> {
+/// The frame of a channel's quantity: what every trace shows of it, and its limits.
+fn frame(view: &EpisodeView<'_>, quantity: Quantity, at: (usize, usize)) -> Option<Frame> {
     let mut values = Vec::new();
-    for flight in &scene.flights {
-        let until_s = scene.until_s(flight, at.0);
+    for trace in &view.traces {
+        let until_s = view.until_s(trace, at.0);
         let picks = [
             quantity.truth(),
             quantity.estimate(),
             Some(quantity.simulated()),
         ];
         for pick in picks.into_iter().flatten() {
-            let curve = scene.curve(flight, at, pick).into_iter();
+            let curve = view.curve(trace, at, pick).into_iter();
             let before = curve.filter(|&(t_s, _)| t_s <= until_s);
             values.extend(before.map(|(_, value)| value));
         }
     }
     let mut frame = Frame::of(values, ROOM)?;
-    frame.cut |= scene
-        .flights
+    frame.cut |= view
+        .traces
         .iter()
-        .any(|flight| flight.outcomes[at.0].diverged);
-    Some(frame.with(&limits(scene, quantity, at.1)))
+        .any(|trace| trace.outcomes[at.0].diverged);
+    Some(frame.with(&limits(view, quantity, at.1)))
 }
 
 /// The limits of a command, where they cut.
-fn limits(scene: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
+fn limits(view: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
     let both = |limit: f64| vec![-limit, limit];
-    match (&scene.campaign.agent, quantity) {
+    match (&view.campaign.agent, quantity) {
         (_, quantity) if quantity != Quantity::Command => Vec::new(),
         (Agent::Uav(uav), _) if uav.actuation == ActuationKind::Thrust => match channel {
             FIRST_ATTITUDE.. => both(uav.max_torque_n_m),
@@ -222,28 +222,28 @@ fn limits(scene: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f6
 }
 
 /// An agent's quantity, a panel for each channel.
-pub(super) fn figure(scene: &EpisodeView<'_>, quantity: Quantity, agent: usize) -> Figure {
-    let channels = 0..scene.campaign.channels().len();
+pub(super) fn figure(view: &EpisodeView<'_>, quantity: Quantity, agent: usize) -> Figure {
+    let channels = 0..view.campaign.channels().len();
     let drawn: Vec<(Plot, bool)> = channels
-        .map(|channel| panel(scene, quantity, (agent, channel), &scene.flights))
+        .map(|channel| panel(view, quantity, (agent, channel), &view.traces))
         .collect();
     let cut = drawn.iter().any(|(_, cut)| *cut);
     let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
     Figure {
-        legend: legend(scene, quantity, agent, &drawn),
-        caption: caption(scene, quantity, failed, cut),
+        legend: legend(view, quantity, agent, &drawn),
+        caption: caption(view, quantity, failed, cut),
         panels: drawn.into_iter().map(|(panel, _)| panel).collect(),
     }
 }
 
 /// What the curves of a figure are.
 fn legend(
-    scene: &EpisodeView<'_>,
+    view: &EpisodeView<'_>,
     quantity: Quantity,
     agent: usize,
     drawn: &[(Plot, bool)],
 ) -> Vec<LegendEntry> {
-    let asked = scene.asked();
+    let asked = view.asked();
     let mut legend = Vec::new();
     match quantity {
         Quantity::State => legend.push(LegendEntry::dashes(Color::Truth, "reference r")),
@@ -255,25 +255,25 @@ fn legend(
         }
         Quantity::Error | Quantity::Command => {}
     }
-    for flight in &scene.flights {
-        let estimates = (0..scene.campaign.channels().len()).any(|channel| {
-            let curve = scene.curve(flight, (agent, channel), quantity.simulated());
+    for trace in &view.traces {
+        let estimates = (0..view.campaign.channels().len()).any(|channel| {
+            let curve = view.curve(trace, (agent, channel), quantity.simulated());
             curve.iter().any(|(_, value)| *value != 0.0)
         });
         match quantity.is_fault() {
             true if estimates => {
                 legend.push(LegendEntry::line(
-                    flight.ink(),
-                    format!("estimate of {}", flight.name),
+                    trace.color(),
+                    format!("estimate of {}", trace.name),
                 ));
             }
             true => {}
-            false => legend.push(LegendEntry::line(flight.ink(), flight.name)),
+            false => legend.push(LegendEntry::line(trace.color(), trace.name)),
         }
     }
     if quantity.estimate().is_some() {
         let text = format!("estimate of {}", asked.name);
-        legend.push(LegendEntry::dashes(scene.estimate_ink(), text));
+        legend.push(LegendEntry::dashes(view.estimate_ink(), text));
     }
     if drawn.iter().any(|(panel, _)| !panel.spans.is_empty()) {
         legend.push(LegendEntry::shade(
@@ -287,8 +287,8 @@ fn legend(
     legend
 }
 
-/// What a figure shows; `failed` is whether a flight failed, `cut` whether a curve leaves its frame.
-fn caption(scene: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool) -> String {
+/// What a figure shows; `failed` is whether an episode failed, `cut` whether a curve leaves its frame.
+fn caption(view: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool) -> String {
     let mut caption = sentence(quantity.name());
     let mut add = |sentence: &str| {
         caption.push(' ');
@@ -299,12 +299,12 @@ fn caption(scene: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool)
             "f1 lumps everything that the feedforward does not cancel: faults, disturbances, coupling, model errors.",
         ),
         Quantity::SensorFault => add("f2 is what the rate is measured too large by."),
-        Quantity::Command if !scene.campaign.is_limited() => {
+        Quantity::Command if !view.campaign.is_limited() => {
             add("The command that acts, after faults; no limit cuts it in this campaign.");
         }
         Quantity::Command => {
             add("The command that acts, after limits and faults.");
-            if scene.campaign.agent.actuation() == ActuationKind::Thrust {
+            if view.campaign.agent.actuation() == ActuationKind::Thrust {
                 add(
                     "x, y and z are the force demanded, of which the thrust along the body axis gives what it can.",
                 );

@@ -13,21 +13,21 @@ use std::sync::Arc;
 const MOST_LISTED: usize = 3;
 
 /// The draw of the episode.
-pub(super) fn section(scene: &EpisodeView<'_>) -> Section {
-    let mut blocks = vec![faults(scene)];
-    if !scene.campaign.disturbances.is_empty() {
-        let summary = match scene.campaign.disturbances.len() {
+pub(super) fn section(view: &EpisodeView<'_>) -> Section {
+    let mut blocks = vec![faults(view)];
+    if !view.campaign.disturbances.is_empty() {
+        let summary = match view.campaign.disturbances.len() {
             1 => "one disturbance of each agent".to_string(),
             count => format!("{count} disturbances of each agent"),
         };
-        blocks.push(Block::Folded(summary, vec![disturbances(scene)]));
+        blocks.push(Block::Folded(summary, vec![disturbances(view)]));
     }
     let summary = "model errors, coupling and initial errors".to_string();
-    blocks.push(Block::Folded(summary, vec![conditions(scene)]));
+    blocks.push(Block::Folded(summary, vec![conditions(view)]));
     Section::new("What it met", blocks)
 }
 
-fn faults(scene: &EpisodeView<'_>) -> Block {
+fn faults(view: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new([
         "agent",
         "fault",
@@ -38,13 +38,13 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
         "ramp",
         "parameters",
     ]);
-    for (agent, draw) in scene.episode.agents.iter().enumerate() {
-        for (place, (fault, drawn)) in scene.campaign.faults.iter().zip(&draw.faults).enumerate() {
+    for (agent, draw) in view.episode.agents.iter().enumerate() {
+        for (place, (fault, drawn)) in view.campaign.faults.iter().zip(&draw.faults).enumerate() {
             if !drawn.occurs() {
                 continue;
             }
-            let (from_s, until_s) = scene.window(drawn);
-            let names = scene.campaign.channels().iter().zip(&drawn.strikes);
+            let (from_s, until_s) = view.window(drawn);
+            let names = view.campaign.channels().iter().zip(&drawn.strikes);
             let struck: Vec<&str> = names
                 .filter(|(_, strikes)| **strikes)
                 .map(|(name, _)| &**name)
@@ -53,7 +53,7 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
                 all if all == drawn.strikes.len() => "all".to_string(),
                 _ => struck.join(", "),
             };
-            let parameters = parameters(scene, draw, |source| source == Source::Fault(place));
+            let parameters = parameters(view, draw, |source| source == Source::Fault(place));
             let target = fault.target.name();
             let strikes = match (target, fault.link) {
                 ("network", Link::Command) => "network, command",
@@ -66,7 +66,7 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
                 Cell::text(strikes),
                 Cell::text(channels),
                 Cell::number(format!("{} s", number(from_s))),
-                Cell::number(match until_s < scene.duration_s {
+                Cell::number(match until_s < view.duration_s {
                     true => format!("{} s", number(until_s)),
                     false => "the end".to_string(),
                 }),
@@ -84,12 +84,12 @@ fn faults(scene: &EpisodeView<'_>) -> Block {
     }
 }
 
-fn disturbances(scene: &EpisodeView<'_>) -> Block {
+fn disturbances(view: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new(["agent", "disturbance", "parameters"]);
-    for (agent, draw) in scene.episode.agents.iter().enumerate() {
-        for (place, disturbance) in scene.campaign.disturbances.iter().enumerate() {
+    for (agent, draw) in view.episode.agents.iter().enumerate() {
+        for (place, disturbance) in view.campaign.disturbances.iter().enumerate() {
             let source = Source::Disturbance(place, disturbance.kind);
-            let parameters = parameters(scene, draw, |own| own == source);
+            let parameters = parameters(view, draw, |own| own == source);
             grid.rows.push(vec![
                 Cell::number(agent.to_string()),
                 Cell::text(disturbance.kind.name()),
@@ -100,7 +100,7 @@ fn disturbances(scene: &EpisodeView<'_>) -> Block {
     Block::Grid(grid)
 }
 
-fn conditions(scene: &EpisodeView<'_>) -> Block {
+fn conditions(view: &EpisodeView<'_>) -> Block {
     let mut grid = Grid::new([
         "agent",
         "true over modelled mass",
@@ -110,7 +110,7 @@ fn conditions(scene: &EpisodeView<'_>) -> Block {
         "initial error (RMS)",
         "of the rate (RMS)",
     ]);
-    for (agent, draw) in scene.episode.agents.iter().enumerate() {
+    for (agent, draw) in view.episode.agents.iter().enumerate() {
         let AgentDraw {
             mass_scale,
             inertia_scale,
@@ -135,14 +135,14 @@ fn conditions(scene: &EpisodeView<'_>) -> Block {
 
 /// The parameters of a disturbance or fault with an agent's values.
 fn parameters<'a>(
-    scene: &'a EpisodeView<'_>,
+    view: &'a EpisodeView<'_>,
     draw: &'a AgentDraw,
     is_of: impl Fn(Source) -> bool + 'a,
 ) -> impl Iterator<Item = String> + 'a {
-    let own = scene.quantities.iter();
+    let own = view.quantities.iter();
     let own = own.filter(move |own| own.is_parameter() && is_of(own.source));
     own.map(|quantity| {
-        let names = scene.campaign.channels();
+        let names = view.campaign.channels();
         let values = quantity.applied(draw);
         let values: Vec<_> = values.map(|(k, value)| (&names[k], value)).collect();
         valued(quantity.name, &values)

@@ -1,4 +1,4 @@
-//! An episode with all that was flown in it: what every figure looks things up in.
+//! An episode with all that was simulated in it: what every figure looks things up in.
 
 use crate::campaign::Campaign;
 use crate::draw::quantities::{Quantity, quantities};
@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 /// Points of a curve: one per pixel of a panel.
 const POINTS: usize = 400;
 
-/// A flight of the episode.
+/// The episode under one controller.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControllerTrace<'a> {
     /// Which of the campaign's controllers.
@@ -25,7 +25,7 @@ pub(super) struct ControllerTrace<'a> {
 
 impl ControllerTrace<'_> {
     /// The colour of its controller, as in the report.
-    pub(super) fn ink(&self) -> Color {
+    pub(super) fn color(&self) -> Color {
         Color::Series(self.controller)
     }
 }
@@ -38,43 +38,43 @@ pub(super) struct EpisodeView<'a> {
     pub(super) episode: AppliedEpisode,
     /// What the campaign draws.
     pub(super) quantities: Vec<Quantity>,
-    /// The flights, that of the controller that was asked for first.
-    pub(super) flights: Vec<ControllerTrace<'a>>,
+    /// The episode under each controller, that of the one that was asked for first.
+    pub(super) traces: Vec<ControllerTrace<'a>>,
     pub(super) duration_s: f64,
 }
 
 impl<'a> EpisodeView<'a> {
     pub(super) fn new(replay: &'a Replay) -> Self {
         let campaign = &replay.campaign;
-        let flight = |controller: usize, outcomes, snapshots| ControllerTrace {
+        let trace = |controller: usize, outcomes, snapshots| ControllerTrace {
             controller,
             name: &campaign.controllers[controller],
             outcomes,
             snapshots,
         };
-        let asked = flight(replay.controller, &*replay.outcomes, &*replay.snapshots);
+        let asked = trace(replay.controller, &*replay.outcomes, &*replay.snapshots);
         let others = replay
             .others
             .iter()
-            .map(|other| flight(other.controller, &other.outcomes, &other.snapshots));
+            .map(|other| trace(other.controller, &other.outcomes, &other.snapshots));
         Self {
             replay,
             campaign,
             episode: draw(campaign, replay.episode).applied(campaign),
             quantities: quantities(campaign),
-            flights: std::iter::once(asked).chain(others).collect(),
+            traces: std::iter::once(asked).chain(others).collect(),
             duration_s: f64::from(campaign.time.steps) * campaign.time.step_s,
         }
     }
 
-    /// The flight under the controller that was asked for.
+    /// The episode under the controller that was asked for.
     pub(super) fn asked(&self) -> &ControllerTrace<'a> {
-        &self.flights[0]
+        &self.traces[0]
     }
 
-    /// The flights under the others.
+    /// The episode under the others.
     pub(super) fn others(&self) -> impl Iterator<Item = &ControllerTrace<'a>> {
-        self.flights[1..].iter()
+        self.traces[1..].iter()
     }
 
     /// The colour of an estimate: that of none of the controllers.
@@ -93,28 +93,28 @@ impl<'a> EpisodeView<'a> {
     }
 
     /// When an agent broke max_error or left the numbers, s.
-    pub(super) fn failed_at_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> Option<f64> {
-        let outcome = &flight.outcomes[agent];
+    pub(super) fn failed_at_s(&self, trace: &ControllerTrace<'_>, agent: usize) -> Option<f64> {
+        let outcome = &trace.outcomes[agent];
         let step = outcome.failed_step?;
         Some(f64::from(step) * self.campaign.time.step_s)
     }
 
     /// Until when what an agent did belongs into a frame, s: one that diverges leaves every frame after it failed.
-    pub(super) fn until_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> f64 {
-        match flight.outcomes[agent].diverged {
-            true => self.failed_at_s(flight, agent).unwrap_or(f64::INFINITY),
+    pub(super) fn until_s(&self, trace: &ControllerTrace<'_>, agent: usize) -> f64 {
+        match trace.outcomes[agent].diverged {
+            true => self.failed_at_s(trace, agent).unwrap_or(f64::INFINITY),
             false => f64::INFINITY,
         }
     }
 
     /// When an agent left the numbers, s; after that its reference stands still, too.
-    pub(super) fn left_s(&self, flight: &ControllerTrace<'_>, agent: usize) -> f64 {
+    pub(super) fn left_s(&self, trace: &ControllerTrace<'_>, agent: usize) -> f64 {
         let gone = |snapshot: &&Snapshot| {
             let channels = snapshot.agents.get(agent).into_iter().flatten();
             channels.into_iter().any(|shown| !shown.x.is_finite())
         };
-        let first = flight.snapshots.iter().find(gone);
-        match flight.outcomes[agent].diverged {
+        let first = trace.snapshots.iter().find(gone);
+        match trace.outcomes[agent].diverged {
             true => first.map_or(f64::INFINITY, |snapshot| self.time_s(snapshot)),
             false => f64::INFINITY,
         }
@@ -123,7 +123,7 @@ impl<'a> EpisodeView<'a> {
     /// What a channel showed over time.
     pub(super) fn curve(
         &self,
-        flight: &ControllerTrace<'_>,
+        trace: &ControllerTrace<'_>,
         (agent, channel): (usize, usize),
         pick: fn(&ChannelSample) -> f64,
     ) -> Vec<(f64, f64)> {
@@ -131,7 +131,7 @@ impl<'a> EpisodeView<'a> {
             let shown = snapshot.agents.get(agent)?.get(channel)?;
             Some((self.time_s(snapshot), pick(shown)))
         };
-        flight.snapshots.iter().filter_map(point).collect()
+        trace.snapshots.iter().filter_map(point).collect()
     }
 
     /// A curve as it is drawn: in few points, between which straight lines are right to `within`.
@@ -148,19 +148,19 @@ impl<'a> EpisodeView<'a> {
     }
 
     /// Points of an agent's curve that are shown, of which `is_outside` says whether they lie far outside the frame: of
-    /// a flight that diverges, those until it is there after it failed.
+    /// an episode that diverges, those until it is there after it failed.
     pub(super) fn shown(
         &self,
-        flight: &ControllerTrace<'_>,
+        trace: &ControllerTrace<'_>,
         agent: usize,
         is_outside: impl Fn(usize) -> bool,
     ) -> usize {
-        let all = flight.snapshots.len();
-        let failed_s = self.failed_at_s(flight, agent).unwrap_or(f64::INFINITY);
-        if !flight.outcomes[agent].diverged {
+        let all = trace.snapshots.len();
+        let failed_s = self.failed_at_s(trace, agent).unwrap_or(f64::INFINITY);
+        if !trace.outcomes[agent].diverged {
             return all;
         }
-        let gone = |&k: &usize| self.time_s(&flight.snapshots[k]) >= failed_s && is_outside(k);
+        let gone = |&k: &usize| self.time_s(&trace.snapshots[k]) >= failed_s && is_outside(k);
         // With the first point outside, so that the line leaves.
         (0..all).find(gone).map_or(all, |k| k + 1)
     }

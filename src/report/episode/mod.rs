@@ -14,6 +14,7 @@ use super::page::html::html;
 use crate::agent::Agent;
 use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
+use crate::simulation::attenuation::INEQUALITY;
 use crate::util::format::number;
 use curves::{Quantity, figure};
 use episode_data::{ControllerTrace, EpisodeView};
@@ -36,42 +37,42 @@ pub struct Trace {
 /// Draws a replayed episode.
 #[must_use]
 pub fn trace(replay: &Replay) -> Trace {
-    let scene = EpisodeView::new(replay);
+    let view = EpisodeView::new(replay);
     Trace {
-        html: html(&document(&scene)),
-        svg: picture::svg(&scene),
+        html: html(&document(&view)),
+        svg: picture::svg(&view),
     }
 }
 
-fn document(scene: &EpisodeView<'_>) -> Document {
-    let campaign = scene.campaign;
-    let asked = scene.asked();
-    let mut sections = vec![errors(scene), encountered::section(scene)];
+fn document(view: &EpisodeView<'_>) -> Document {
+    let campaign = view.campaign;
+    let asked = view.asked();
+    let mut sections = vec![errors(view), encountered::section(view)];
     sections.push(match campaign.agent {
-        Agent::Uav(_) => path::section(scene),
-        Agent::Biped(ref biped) => walk::section(scene, &biped.robot),
+        Agent::Uav(_) => path::section(view),
+        Agent::Biped(ref biped) => walk::section(view, &biped.robot),
     });
-    sections.extend(agents(scene));
+    sections.extend(agents(view));
     Document {
-        title: format!("Episode {} of {}", scene.episode.index, campaign.name),
+        title: format!("Episode {} of {}", view.episode.index, campaign.name),
         subtitle: format!(
             "{} {} over {} s; {} beside {}; seed {}",
             campaign.team,
             campaign.agent.noun(campaign.team),
-            scene.duration_s,
+            view.duration_s,
             asked.name,
-            match &*scene.others().map(|flight| flight.name).collect::<Vec<_>>() {
+            match &*view.others().map(|trace| trace.name).collect::<Vec<_>>() {
                 [] => "no other controller".to_string(),
                 names => names.join(", "),
             },
             campaign.seed
         ),
-        lead: scene
-            .flights
+        lead: view
+            .traces
             .iter()
-            .map(|flight| ending(scene, flight))
+            .map(|trace| ending(view, trace))
             .collect(),
-        warnings: scene
+        warnings: view
             .replay
             .stand_in
             .iter()
@@ -85,18 +86,18 @@ fn document(scene: &EpisodeView<'_>) -> Document {
     }
 }
 
-/// How a flight ended, in a sentence.
-fn ending(scene: &EpisodeView<'_>, flight: &ControllerTrace<'_>) -> String {
-    let failed: Vec<String> = (0..scene.campaign.team)
+/// How the episode ended under a controller, in a sentence.
+fn ending(view: &EpisodeView<'_>, trace: &ControllerTrace<'_>) -> String {
+    let failed: Vec<String> = (0..view.campaign.team)
         .filter_map(|agent| {
-            let outcome = &flight.outcomes[agent];
-            let how = match (status(scene.campaign, outcome), outcome.failed_step) {
+            let outcome = &trace.outcomes[agent];
+            let how = match (status(view.campaign, outcome), outcome.failed_step) {
                 (Status::Ok, _) => return None,
                 (Status::Exceeded, Some(_)) => "broke max_error",
                 (Status::Exceeded, None) => "broke max_rmse",
                 (Status::Diverged, _) => "failed",
             };
-            let when = scene.failed_at_s(flight, agent);
+            let when = view.failed_at_s(trace, agent);
             let when = when.map_or(String::new(), |t_s| format!(" at {t_s:.3} s"));
             let then = match outcome.diverged {
                 true => " and diverged",
@@ -105,50 +106,53 @@ fn ending(scene: &EpisodeView<'_>, flight: &ControllerTrace<'_>) -> String {
             Some(format!("agent {agent} {how}{when}{then}"))
         })
         .collect();
-    let name = flight.name;
+    let name = trace.name;
     match &*failed {
-        [] if scene.campaign.team == 1 => format!("{name}: ok, within the limits."),
+        [] if view.campaign.team == 1 => format!("{name}: ok, within the limits."),
         [] => format!("{name}: ok, every agent within the limits."),
         failed => format!("{name}: {}.", failed.join(", ")),
     }
 }
 
 /// The errors in numbers.
-fn errors(scene: &EpisodeView<'_>) -> Section {
-    let worst = scene.worst_agent();
-    let others: Vec<Block> = (0..scene.campaign.team)
+fn errors(view: &EpisodeView<'_>) -> Section {
+    let worst = view.worst_agent();
+    let others: Vec<Block> = (0..view.campaign.team)
         .filter(|&agent| agent != worst)
         .flat_map(|agent| {
             [
                 Block::text(format!("Agent {agent}")),
-                Block::Grid(errors_of(scene, agent)),
+                Block::Grid(errors_of(view, agent)),
             ]
         })
         .collect();
-    let bounded = match scene.is_bounded() {
+    let bounded = match view.is_bounded() {
         true => format!(
             ", and for {} the attenuation that inequality (24) of the paper bounds, beside its certified level",
-            scene.asked().name
+            view.asked().name
         ),
         false => String::new(),
     };
     let mut blocks = vec![
         Block::text(format!(
             "Agent {worst}{}: RMS error / largest error from {} s on{bounded}.",
-            match scene.campaign.team {
+            match view.campaign.team {
                 1 => "",
                 _ => ", which fared worst",
             },
-            f64::from(scene.campaign.time.settle_step) * scene.campaign.time.step_s,
+            f64::from(view.campaign.time.settle_step) * view.campaign.time.step_s,
         )),
-        Block::Grid(errors_of(scene, worst)),
+        Block::Grid(errors_of(view, worst)),
     ];
     if !others.is_empty() {
-        let title = format!("the other {}", scene.campaign.agent.plural());
+        let title = format!("the other {}", view.campaign.agent.plural());
         blocks.push(Block::Folded(title, others));
     }
+    if view.is_bounded() {
+        blocks.push(Block::text(format!("{INEQUALITY}.")));
+    }
     let mut reasons: Vec<String> = Vec::new();
-    let found = scene.replay.attenuations.iter().flatten();
+    let found = view.replay.attenuations.iter().flatten();
     for reason in found.filter_map(|found| found.as_ref().err()) {
         let reason = reason.to_string();
         if !reasons.contains(&reason) {
@@ -156,7 +160,7 @@ fn errors(scene: &EpisodeView<'_>) -> Section {
         }
     }
     if !reasons.is_empty() {
-        let place = match scene.is_bounded() {
+        let place = match view.is_bounded() {
             true => " where there is a dash",
             false => "",
         };
@@ -168,25 +172,25 @@ fn errors(scene: &EpisodeView<'_>) -> Section {
     Section::new("Errors", blocks)
 }
 
-fn errors_of(scene: &EpisodeView<'_>, agent: usize) -> Grid {
+fn errors_of(view: &EpisodeView<'_>, agent: usize) -> Grid {
     let mut grid = Grid::new(["channel"]);
-    let names = scene.flights.iter().map(|flight| flight.name.to_string());
+    let names = view.traces.iter().map(|trace| trace.name.to_string());
     grid.head.extend(names);
-    if scene.is_bounded() {
+    if view.is_bounded() {
         let heads = ["attenuation", "certified", "(24)"];
         grid.head.extend(heads.map(String::from));
     }
-    for (channel, name) in scene.campaign.channels().iter().enumerate() {
-        let unit = scene.campaign.unit(channel);
+    for (channel, name) in view.campaign.channels().iter().enumerate() {
+        let unit = view.campaign.unit(channel);
         let mut row = vec![Cell::text(format!("{name},\u{a0}{unit}"))];
-        row.extend(scene.flights.iter().map(|flight| {
-            let metrics = &flight.outcomes[agent].channels[channel];
+        row.extend(view.traces.iter().map(|trace| {
+            let metrics = &trace.outcomes[agent].channels[channel];
             Cell::number(match metrics.max_abs.is_nan() {
                 true => "-".to_string(),
                 false => format!("{} / {}", number(metrics.rmse), number(metrics.max_abs)),
             })
         }));
-        let attenuation = match &scene.replay.attenuations[agent][channel] {
+        let attenuation = match &view.replay.attenuations[agent][channel] {
             Ok(found) => [
                 Cell::number(number(found.level())),
                 Cell::number(number(found.certified)),
@@ -197,22 +201,22 @@ fn errors_of(scene: &EpisodeView<'_>, agent: usize) -> Grid {
             ],
             Err(_) => ["-"; 3].map(Cell::number),
         };
-        row.extend(attenuation.into_iter().filter(|_| scene.is_bounded()));
+        row.extend(attenuation.into_iter().filter(|_| view.is_bounded()));
         grid.rows.push(row);
     }
     grid
 }
 
 /// The curves: those of the agent that fared worst, and then, folded, of the others.
-fn agents(scene: &EpisodeView<'_>) -> Vec<Section> {
-    let channels = scene.campaign.channels().len();
-    let order = scene.worst_first();
+fn agents(view: &EpisodeView<'_>) -> Vec<Section> {
+    let channels = view.campaign.channels().len();
+    let order = view.worst_first();
     let in_full = channels * order.len() <= MOST_IN_FULL;
     let drawn = (MOST_CHANNELS / channels).clamp(1, order.len());
     let full = |agent: usize| -> Vec<Block> {
         Quantity::ALL
             .into_iter()
-            .map(|quantity| Block::Figure(figure(scene, quantity, agent)))
+            .map(|quantity| Block::Figure(figure(view, quantity, agent)))
             .collect()
     };
     let mut sections = Vec::new();
@@ -224,7 +228,7 @@ fn agents(scene: &EpisodeView<'_>) -> Vec<Section> {
             (_, true) => folded.push(Block::Folded(title, full(agent))),
             (_, false) => folded.push(Block::Folded(
                 format!("{title}: tracking errors"),
-                vec![Block::Figure(figure(scene, Quantity::Error, agent))],
+                vec![Block::Figure(figure(view, Quantity::Error, agent))],
             )),
         }
     }
@@ -234,7 +238,7 @@ fn agents(scene: &EpisodeView<'_>) -> Vec<Section> {
         ));
     }
     if order.len() > 1 {
-        let title = format!("The other {}", scene.campaign.agent.plural());
+        let title = format!("The other {}", view.campaign.agent.plural());
         sections.push(Section::new(title, folded));
     }
     sections

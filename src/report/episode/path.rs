@@ -17,29 +17,28 @@ const VIEWS: [(&str, [usize; 2], [&str; 2]); 2] = [
 ];
 
 /// The paths under every controller.
-pub(super) fn section(scene: &EpisodeView<'_>) -> Section {
+pub(super) fn section(view: &EpisodeView<'_>) -> Section {
     let mut cut = false;
-    let frames = [0, 1, 2].map(|coordinate| frame(scene, coordinate));
+    let frames = [0, 1, 2].map(|coordinate| frame(view, coordinate));
     let mut panels = Vec::new();
-    for (view, channels, labels) in VIEWS {
+    for (side, channels, labels) in VIEWS {
         let [Some(across), Some(up)] = channels.map(|channel| frames[channel]) else {
             continue;
         };
         cut |= across.cut || up.cut;
-        for flight in &scene.flights {
-            panels.push(panel(scene, flight, (view, channels, labels), [across, up]));
+        for trace in &view.traces {
+            panels.push(panel(view, trace, (side, channels, labels), [across, up]));
         }
     }
     let mut legend = vec![LegendEntry::dashes(Color::Truth, "reference")];
     legend.extend(
-        scene
-            .flights
+        view.traces
             .iter()
-            .map(|flight| LegendEntry::line(flight.ink(), flight.name)),
+            .map(|trace| LegendEntry::line(trace.color(), trace.name)),
     );
     let mut caption = format!(
         "Paths of all {}; a dot is where one begins.",
-        scene.campaign.agent.plural()
+        view.campaign.agent.plural()
     );
     if cut {
         caption.push_str(" Paths that run away leave the frame.");
@@ -52,35 +51,35 @@ pub(super) fn section(scene: &EpisodeView<'_>) -> Section {
     Section::new("Paths", vec![Block::Figure(figure)])
 }
 
-/// The frame of a coordinate: of all references and of all flights until they diverged.
-fn frame(scene: &EpisodeView<'_>, channel: usize) -> Option<Frame> {
+/// The frame of a coordinate: of all references and of all episodes until they diverged.
+fn frame(view: &EpisodeView<'_>, channel: usize) -> Option<Frame> {
     let mut values = Vec::new();
-    for flight in &scene.flights {
-        for agent in 0..scene.campaign.team {
-            let until_s = scene.until_s(flight, agent);
+    for trace in &view.traces {
+        for agent in 0..view.campaign.team {
+            let until_s = view.until_s(trace, agent);
             let picks: [fn(&ChannelSample) -> f64; 2] = [|shown| shown.r, |shown| shown.x];
             for pick in picks {
-                let curve = scene.curve(flight, (agent, channel), pick).into_iter();
+                let curve = view.curve(trace, (agent, channel), pick).into_iter();
                 let before = curve.filter(|&(t_s, _)| t_s <= until_s);
                 values.extend(before.map(|(_, value)| value));
             }
         }
     }
     let mut frame = Frame::of(values, ROOM)?;
-    let mut outcomes = scene.flights.iter().flat_map(|flight| flight.outcomes);
+    let mut outcomes = view.traces.iter().flat_map(|trace| trace.outcomes);
     frame.cut |= outcomes.any(|outcome| outcome.diverged);
     Some(frame)
 }
 
 fn panel(
-    scene: &EpisodeView<'_>,
-    flight: &ControllerTrace<'_>,
-    (view, channels, labels): (&str, [usize; 2], [&str; 2]),
+    view: &EpisodeView<'_>,
+    trace: &ControllerTrace<'_>,
+    (side, channels, labels): (&str, [usize; 2], [&str; 2]),
     frames: [Frame; 2],
 ) -> Plot {
     let path = |agent: usize, pick: fn(&ChannelSample) -> f64, until_s: f64| -> Vec<(f64, f64)> {
         let [x, y] = channels.map(|channel| {
-            let mut curve = scene.curve(flight, (agent, channel), pick);
+            let mut curve = view.curve(trace, (agent, channel), pick);
             curve.retain(|&(t_s, _)| t_s <= until_s);
             curve
         });
@@ -91,7 +90,7 @@ fn panel(
         };
         let mut points: Vec<(f64, f64)> = points.map(near).collect();
         let gone = |k: usize| points.get(k).is_some_and(|point| point.0.is_nan());
-        points.truncate(scene.shown(flight, agent, gone));
+        points.truncate(view.shown(trace, agent, gone));
         points
             .chunks(points.len().div_ceil(POINTS).max(1))
             .filter_map(|stretch| stretch.first().copied())
@@ -99,20 +98,20 @@ fn panel(
             .collect()
     };
     let mut marks = Vec::new();
-    for agent in 0..scene.campaign.team {
+    for agent in 0..view.campaign.team {
         let simulated = path(agent, |shown| shown.x, f64::INFINITY);
         let first = simulated.first().copied();
-        marks.push(Mark::Line(simulated, flight.ink(), Stroke::Solid));
-        let reference = path(agent, |shown| shown.r, scene.left_s(flight, agent));
+        marks.push(Mark::Line(simulated, trace.color(), Stroke::Solid));
+        let reference = path(agent, |shown| shown.r, view.left_s(trace, agent));
         marks.push(Mark::Line(reference, Color::Truth, Stroke::Dashed));
-        marks.push(Mark::Dots(first.into_iter().collect(), flight.ink()));
+        marks.push(Mark::Dots(first.into_iter().collect(), trace.color()));
     }
     let [x, y] = [0, 1].map(|k| Axis {
         range: Some(frames[k].range()),
         ..Axis::new(labels[k])
     });
     Plot {
-        title: format!("{}, {view}", flight.name),
+        title: format!("{}, {side}", trace.name),
         x,
         y,
         marks,

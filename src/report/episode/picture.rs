@@ -14,30 +14,30 @@ const ROWS: [Quantity; 4] = [
     Quantity::Command,
 ];
 /// The agent that fared worst in the channel of its largest error.
-pub(super) fn svg(scene: &EpisodeView<'_>) -> String {
-    let agent = scene.worst_agent();
-    let (channel, _) = scene.error_of(agent);
+pub(super) fn svg(view: &EpisodeView<'_>) -> String {
+    let agent = view.worst_agent();
+    let (channel, _) = view.error_of(agent);
     let (mut panels, mut cut) = (Vec::new(), false);
     for quantity in ROWS {
-        for flight in &scene.flights {
-            let (mut drawn, leaves) = panel(scene, quantity, (agent, channel), &[*flight]);
+        for trace in &view.traces {
+            let (mut drawn, leaves) = panel(view, quantity, (agent, channel), &[*trace]);
             cut |= leaves;
-            drawn.title = format!("{}: {}", flight.name, quantity.name());
+            drawn.title = format!("{}: {}", trace.name, quantity.name());
             panels.push(drawn);
         }
     }
-    let mut legend = legend(scene);
+    let mut legend = legend(view);
     if panels.iter().any(|panel| !panel.spans.is_empty()) {
         legend.push(LegendEntry::shade(Color::Fault, "a fault strikes"));
     }
     if panels.iter().any(|panel| !panel.levels.is_empty()) {
         legend.push(LegendEntry::line(Color::Limit, "limit"));
     }
-    let campaign = scene.campaign;
+    let campaign = view.campaign;
     let title = format!(
         "{}, episode {}: {} of agent {agent}",
         campaign.name,
-        scene.episode.index,
+        view.episode.index,
         campaign.channels()[channel]
     );
     let subtitle = format!(
@@ -52,17 +52,17 @@ pub(super) fn svg(scene: &EpisodeView<'_>) -> String {
             false => "",
         }
     );
-    plot_grid(&title, &subtitle, &panels, scene.flights.len(), &legend)
+    plot_grid(&title, &subtitle, &panels, view.traces.len(), &legend)
 }
 
 /// Colours and what they mean.
-fn legend(scene: &EpisodeView<'_>) -> Vec<LegendEntry> {
-    let flights = scene.flights.iter();
-    let mut legend: Vec<LegendEntry> = flights
-        .map(|flight| LegendEntry::line(flight.ink(), flight.name))
+fn legend(view: &EpisodeView<'_>) -> Vec<LegendEntry> {
+    let traces = view.traces.iter();
+    let mut legend: Vec<LegendEntry> = traces
+        .map(|trace| LegendEntry::line(trace.color(), trace.name))
         .collect();
     legend.extend([
-        LegendEntry::dashes(scene.estimate_ink(), "estimate of e"),
+        LegendEntry::dashes(view.estimate_ink(), "estimate of e"),
         LegendEntry::line(
             Color::Truth,
             "f1, f2; their estimates in the colour of the controller",

@@ -25,10 +25,10 @@ const COM: Color = Color::Series(5);
 const ZMP: Color = Color::Limit;
 
 /// The walk of the robot that fared worst, and its stick figures.
-pub(super) fn section(scene: &EpisodeView<'_>, robot: &Robot) -> Section {
-    let agent = scene.worst_agent();
+pub(super) fn section(view: &EpisodeView<'_>, robot: &Robot) -> Section {
+    let agent = view.worst_agent();
     let mut blocks = Vec::new();
-    let walk = match &scene.campaign.reference {
+    let walk = match &view.campaign.reference {
         Reference::Walk(walks) => walks.get(agent),
         Reference::Sinusoid(_) | Reference::Waypoints(_) => None,
     };
@@ -38,7 +38,7 @@ pub(super) fn section(scene: &EpisodeView<'_>, robot: &Robot) -> Section {
         )));
         blocks.push(Block::Figure(plan(walk, robot)));
     }
-    blocks.push(Block::Figure(sticks(scene, robot, agent, walk)));
+    blocks.push(Block::Figure(sticks(view, robot, agent, walk)));
     Section::new("Walk", blocks)
 }
 
@@ -184,23 +184,18 @@ fn extent(walk: &Walk) -> [f64; 2] {
 }
 
 /// The outline of a sole at a foothold.
-fn sole(corners: &[[f64; 2]], at: Placement, ink: Color) -> Mark {
+fn sole(corners: &[[f64; 2]], at: Placement, color: Color) -> Mark {
     let closed = corners.iter().chain(corners.first());
     let outline = closed.map(|&corner| at.point(corner).into());
-    Mark::Line(outline.collect(), ink, Stroke::Solid)
+    Mark::Line(outline.collect(), color, Stroke::Solid)
 }
 
 /// Poses of a robot over time under every controller, from the side.
-fn sticks(
-    scene: &EpisodeView<'_>,
-    robot: &Robot,
-    agent: usize,
-    walk: Option<&AgentWalk>,
-) -> Figure {
+fn sticks(view: &EpisodeView<'_>, robot: &Robot, agent: usize, walk: Option<&AgentWalk>) -> Figure {
     let height_m = walk.map_or(robot.base_height_m, |own| own.walk.gait.pelvis_height_m);
-    let panels = scene.flights.iter().map(|flight| {
+    let panels = view.traces.iter().map(|trace| {
         let (mut planned, mut simulated) = (Vec::new(), Vec::new());
-        for (k, snapshot) in instants(scene, flight, walk).into_iter().enumerate() {
+        for (k, snapshot) in instants(view, trace, walk).into_iter().enumerate() {
             let ahead_m = APART_M * k as f64;
             let pose = |pick: fn(&ChannelSample) -> f64| {
                 let angles = std::array::from_fn(|joint| pick(&snapshot.agents[agent][joint]));
@@ -217,7 +212,7 @@ fn sticks(
             simulated.push(Mark::Line(left, LEGS[0], Stroke::Solid));
         }
         Plot {
-            title: flight.name.to_string(),
+            title: trace.name.to_string(),
             x: Axis::new(format!("ahead, m; each pose {APART_M} m further")),
             y: Axis::new("height, m"),
             marks: planned.into_iter().chain(simulated).collect(),
@@ -225,9 +220,9 @@ fn sticks(
             ..Plot::default()
         }
     });
-    let times: Vec<String> = instants(scene, scene.asked(), walk)
+    let times: Vec<String> = instants(view, view.asked(), walk)
         .into_iter()
-        .map(|snapshot| format!("{:.2}", scene.time_s(snapshot)))
+        .map(|snapshot| format!("{:.2}", view.time_s(snapshot)))
         .collect();
     Figure {
         panels: panels.collect(),
@@ -247,8 +242,8 @@ fn sticks(
 
 /// Snapshots spread evenly over the walk, or over the episode.
 fn instants<'a>(
-    scene: &EpisodeView<'_>,
-    flight: &ControllerTrace<'a>,
+    view: &EpisodeView<'_>,
+    trace: &ControllerTrace<'a>,
     walk: Option<&AgentWalk>,
 ) -> Vec<&'a Snapshot> {
     let walking = |snapshot: &&Snapshot| {
@@ -259,9 +254,9 @@ fn instants<'a>(
             walk.gait.standing_before_s,
             walk.duration_s() - walk.gait.standing_after_s,
         );
-        (from_s..=until_s).contains(&(scene.time_s(snapshot) - start_s))
+        (from_s..=until_s).contains(&(view.time_s(snapshot) - start_s))
     };
-    let all: Vec<&Snapshot> = flight.snapshots.iter().filter(walking).collect();
+    let all: Vec<&Snapshot> = trace.snapshots.iter().filter(walking).collect();
     let last = all.len().saturating_sub(1);
     let mut places: Vec<usize> = (0..POSES).map(|k| k * last / (POSES - 1)).collect();
     places.dedup();

@@ -94,7 +94,7 @@ impl Cell {
 pub(crate) struct Spread {
     pub(crate) value: f64,
     pub(crate) interval: Option<[f64; 2]>,
-    pub(crate) ink: Color,
+    pub(crate) color: Color,
     pub(crate) scale: Scale,
 }
 
@@ -147,7 +147,7 @@ pub(crate) struct Figure {
 #[derive(Debug, Clone)]
 pub(crate) struct LegendEntry {
     pub(crate) swatch: Swatch,
-    pub(crate) ink: Color,
+    pub(crate) color: Color,
     pub(crate) text: String,
 }
 
@@ -161,30 +161,30 @@ pub(crate) enum Swatch {
 }
 
 impl LegendEntry {
-    pub(crate) fn line(ink: Color, text: impl Into<String>) -> Self {
-        Self::new(Swatch::Line, ink, text)
+    pub(crate) fn line(color: Color, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Line, color, text)
     }
 
-    pub(crate) fn dashes(ink: Color, text: impl Into<String>) -> Self {
-        Self::new(Swatch::Dashes, ink, text)
+    pub(crate) fn dashes(color: Color, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Dashes, color, text)
     }
 
-    pub(crate) fn shade(ink: Color, text: impl Into<String>) -> Self {
-        Self::new(Swatch::Shade, ink, text)
+    pub(crate) fn shade(color: Color, text: impl Into<String>) -> Self {
+        Self::new(Swatch::Shade, color, text)
     }
 
     /// The key of a line.
-    pub(crate) fn of(stroke: Stroke, ink: Color, text: impl Into<String>) -> Self {
+    pub(crate) fn of(stroke: Stroke, color: Color, text: impl Into<String>) -> Self {
         match stroke {
-            Stroke::Dashed => Self::dashes(ink, text),
-            Stroke::Solid | Stroke::Steps => Self::line(ink, text),
+            Stroke::Dashed => Self::dashes(color, text),
+            Stroke::Solid | Stroke::Steps => Self::line(color, text),
         }
     }
 
-    fn new(swatch: Swatch, ink: Color, text: impl Into<String>) -> Self {
+    fn new(swatch: Swatch, color: Color, text: impl Into<String>) -> Self {
         Self {
             swatch,
-            ink,
+            color,
             text: text.into(),
         }
     }

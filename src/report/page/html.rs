@@ -78,7 +78,7 @@ fn of_figure(figure: &Figure) -> Markup {
             @if !figure.legend.is_empty() {
                 div.legend {
                     @for key in &figure.legend {
-                        span { i class=(of_swatch(key.swatch)) style={ "color:" (key.ink.css()) } {} (key.text) }
+                        span { i class=(of_swatch(key.swatch)) style={ "color:" (key.color.css()) } {} (key.text) }
                     }
                 }
             }
@@ -145,7 +145,7 @@ fn of_spread(spread: &Spread) -> Markup {
     let (width, height) = BAR;
     let at = |value: f64| place(spread.scale, value);
     let middle = height / 2.0;
-    let ink = spread.ink.css();
+    let color = spread.color.css();
     let (low, high) = spread.scale.ends();
     html! {
         div {
@@ -155,9 +155,9 @@ fn of_spread(spread: &Spread) -> Markup {
                     line x1=(x) x2=(x) y1="0" y2=(height) stroke="var(--grid)" {}
                 }
                 @if let Some([lower, upper]) = spread.interval {
-                    line x1=(at(lower)) x2=(at(upper)) y1=(middle) y2=(middle) stroke=(ink) stroke-width="2.5" {}
+                    line x1=(at(lower)) x2=(at(upper)) y1=(middle) y2=(middle) stroke=(color) stroke-width="2.5" {}
                 }
-                @if spread.value.is_finite() { circle cx=(at(spread.value)) cy=(middle) r="4" fill=(ink) {} }
+                @if spread.value.is_finite() { circle cx=(at(spread.value)) cy=(middle) r="4" fill=(color) {} }
             }
             span { (spread.text()) }
         }

@@ -158,8 +158,8 @@ impl Plot {
             let line = ReferenceLine::horizontal(level).with_color(Color::Limit.css());
             layout = layout.with_reference_line(line);
         }
-        for (moment, ink) in self.moments.iter().filter(|(moment, _)| moment.is_finite()) {
-            let line = ReferenceLine::vertical(*moment).with_color(ink.css());
+        for (moment, color) in self.moments.iter().filter(|(moment, _)| moment.is_finite()) {
+            let line = ReferenceLine::vertical(*moment).with_color(color.css());
             layout = layout.with_reference_line(line);
         }
         let drawn = SvgBackend::new().render_scene(&render_multiple(plots, layout));
@@ -229,12 +229,12 @@ impl Plot {
 
     fn plots(&self, mark: &Mark) -> Vec<Layer> {
         match mark {
-            Mark::Line(points, ink, stroke) => self
+            Mark::Line(points, color, stroke) => self
                 .pieces(points)
                 .map(|piece| {
                     let line = LinePlot::new()
                         .with_data(thinned(piece, MOST_POINTS))
-                        .with_color(ink.css())
+                        .with_color(color.css())
                         .with_stroke_width(1.6);
                     Layer::Line(match stroke {
                         Stroke::Solid => line,
@@ -243,7 +243,7 @@ impl Plot {
                     })
                 })
                 .collect(),
-            Mark::Band(points, ink) => {
+            Mark::Band(points, color) => {
                 let finite: Vec<&(f64, f64, f64)> = points
                     .iter()
                     .filter(|(x, low, high)| x.is_finite() && low.is_finite() && high.is_finite())
@@ -259,14 +259,14 @@ impl Plot {
                     column(|point| point.1),
                     column(|point| point.2),
                 );
-                vec![Layer::Band(band.with_color(ink.css()).with_opacity(0.22))]
+                vec![Layer::Band(band.with_color(color.css()).with_opacity(0.22))]
             }
-            Mark::Dots(points, ink) => {
+            Mark::Dots(points, color) => {
                 let finite: Vec<(f64, f64)> = self.pieces(points).flatten().copied().collect();
                 if finite.is_empty() {
                     return Vec::new();
                 }
-                let dots = ScatterPlot::new().with_data(finite).with_color(ink.css());
+                let dots = ScatterPlot::new().with_data(finite).with_color(color.css());
                 vec![Layer::Scatter(dots.with_size(3.0))]
             }
         }

@@ -53,7 +53,12 @@ pub(crate) fn plot_grid(
 fn legend_of(legend: &[LegendEntry], width: f64) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut y) = (20.0, TITLE + 0.5 * LINE);
-    for LegendEntry { swatch, ink, text } in legend {
+    for LegendEntry {
+        swatch,
+        color,
+        text,
+    } in legend
+    {
         let own = 45.0 + LETTER * text.chars().count() as f64;
         if x > 20.0 && x + own > width {
             (x, y) = (20.0, y + LINE);
@@ -67,7 +72,7 @@ fn legend_of(legend: &[LegendEntry], width: f64) -> (String, f64) {
             "<line x1=\"{x}\" x2=\"{}\" y1=\"{middle}\" y2=\"{middle}\" stroke=\"{}\" {drawn}/>\
              <text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"var(--text)\">{}</text>",
             x + 18.0,
-            ink.css(),
+            color.css(),
             x + 25.0,
             y,
             escaped(text),

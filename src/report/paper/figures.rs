@@ -35,7 +35,7 @@ struct View {
 /// A line of a figure.
 struct Line {
     name: &'static str,
-    ink: Color,
+    color: Color,
     stroke: Stroke,
     pick: fn(&ChannelSample) -> f64,
 }
@@ -43,19 +43,19 @@ struct Line {
 const STATES: &[Line] = &[
     Line {
         name: "reference r",
-        ink: Color::Truth,
+        color: Color::Truth,
         stroke: Stroke::Dashed,
         pick: |shown| shown.r,
     },
     Line {
         name: "state x",
-        ink: Color::Series(0),
+        color: Color::Series(0),
         stroke: Stroke::Solid,
         pick: |shown| shown.x,
     },
     Line {
         name: "its estimate",
-        ink: Color::Series(1),
+        color: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.r + shown.e_hat,
     },
@@ -63,13 +63,13 @@ const STATES: &[Line] = &[
 const ACTUATOR_FAULT: &[Line] = &[
     Line {
         name: "actuator fault f1",
-        ink: Color::Truth,
+        color: Color::Truth,
         stroke: Stroke::Solid,
         pick: |shown| shown.f1,
     },
     Line {
         name: "its estimate",
-        ink: Color::Series(1),
+        color: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.f1_hat,
     },
@@ -77,20 +77,20 @@ const ACTUATOR_FAULT: &[Line] = &[
 const SENSOR_FAULT: &[Line] = &[
     Line {
         name: "sensor fault f2",
-        ink: Color::Truth,
+        color: Color::Truth,
         stroke: Stroke::Solid,
         pick: |shown| shown.f2,
     },
     Line {
         name: "its estimate",
-        ink: Color::Series(1),
+        color: Color::Series(1),
         stroke: Stroke::Dashed,
         pick: |shown| shown.f2_hat,
     },
 ];
 const CONTROL: &[Line] = &[Line {
     name: "control input u",
-    ink: Color::Series(0),
+    color: Color::Series(0),
     stroke: Stroke::Solid,
     pick: |shown| shown.u,
 }];
@@ -156,21 +156,21 @@ pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, P
     Ok(figures.into_iter().map(|(_, figure)| figure).collect())
 }
 
-fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
-    let campaign = &flights.campaign;
+fn of_view(scenarios: &Scenarios, view: &View, agent: &str) -> Figure {
+    let campaign = &scenarios.campaign;
     let panels: Vec<Plot> = campaign
         .channels()
         .iter()
         .enumerate()
         .map(|(channel, name)| {
             let marks = view.lines.iter().map(|line| {
-                let points = flights.series(view.simulated, channel, line.pick);
-                Mark::Line(points.0, line.ink, line.stroke)
+                let points = scenarios.series(view.simulated, channel, line.pick);
+                Mark::Line(points.0, line.color, line.stroke)
             });
             Plot {
                 title: name.to_string(),
                 x: Axis {
-                    range: Some((0.0, flights.end_s())),
+                    range: Some((0.0, scenarios.end_s())),
                     ..Axis::new("time, s")
                 },
                 y: Axis::new((view.unit)(campaign.unit(channel))),
@@ -182,7 +182,7 @@ fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
     let legend: Vec<LegendEntry> = view
         .lines
         .iter()
-        .map(|line| LegendEntry::of(line.stroke, line.ink, line.name))
+        .map(|line| LegendEntry::of(line.stroke, line.color, line.name))
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
     let controller = match view.simulated {
@@ -190,7 +190,7 @@ fn of_view(flights: &Scenarios, view: &View, agent: &str) -> Figure {
         Scenario::Ftc | Scenario::OnCourse => "FTC",
     };
     let mut caption = format!("First {agent} of the team under the {controller}.");
-    if let Some(lost_s) = flights.lost_s(view.simulated) {
+    if let Some(lost_s) = scenarios.lost_s(view.simulated) {
         caption.push_str(&format!(" The episode diverges within {lost_s:.2} s."));
     }
     Figure {

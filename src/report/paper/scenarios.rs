@@ -1,4 +1,4 @@
-//! The flights that figures and claims are read from, and what is met in them.
+//! The episodes that figures and claims are read from, and what is met in them.
 
 use super::error::PaperError;
 use super::measures::Series;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// Steps between two samples: 10 ms.
 const EVERY: u32 = 10;
 
-/// A flight of a campaign.
+/// An episode of a campaign, by its controller and its start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Scenario {
     /// Under the FTC.
@@ -25,7 +25,7 @@ pub(super) enum Scenario {
 }
 
 impl Scenario {
-    /// What the flight is called in a sentence.
+    /// What the episode is called in a sentence.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Ftc => "the episode under the FTC",
@@ -46,7 +46,7 @@ pub struct Scenarios {
 }
 
 impl Scenarios {
-    /// Flies the first episode of a campaign in double precision.
+    /// Simulates the first episode of a campaign in double precision.
     ///
     /// # Errors
     /// If it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
@@ -102,7 +102,7 @@ impl Scenarios {
         )
     }
 
-    /// When the first agent's flight was no longer finite, s.
+    /// When the first agent's episode was no longer finite, s.
     pub(super) fn lost_s(&self, simulated: Scenario) -> Option<f64> {
         let lost = |snapshot: &&Snapshot| {
             let mut shown = snapshot.agents.first().into_iter().flatten();
@@ -116,7 +116,7 @@ impl Scenarios {
         f64::from(snapshot.step) * self.campaign.time.step_s
     }
 
-    /// How long a flight is, s.
+    /// How long an episode is, s.
     pub(super) fn end_s(&self) -> f64 {
         f64::from(self.campaign.time.steps) * self.campaign.time.step_s
     }

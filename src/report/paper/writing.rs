@@ -120,6 +120,10 @@ fn document(claims: &[Claim]) -> Document {
             vec![
                 Block::Grid(grid),
                 Block::text(
+                    "The paper is on teams of UAVs and biped robots for search and rescue, with a fault-tolerant H-infinity controller. \
+                     The copy that was used has neither title nor authors, so it is not cited.",
+                ),
+                Block::text(
                     "The robot is a Unitree G1 (the paper's is not published), the amplitudes of the sensor faults are ours, the \
                      initial errors have the size of the paper's but are the same on all channels, and the observer of the paper's \
                      PID is not specified: it is the one of three states that its text suggests. What the paper calls brief, high, \

@@ -20,17 +20,17 @@ const WORST: f64 = 3.0;
 const BINS: usize = 10;
 
 /// What each drawn quantity does to failures and errors.
-pub(crate) fn ranking(evidence: &RunData) -> Section {
-    let sheet = &evidence.ranking;
-    if sheet.rows() == 0 {
-        let text = match evidence.manifest.episodes {
+pub(crate) fn ranking(data: &RunData) -> Section {
+    let table = &data.ranking;
+    if table.rows() == 0 {
+        let text = match data.manifest.episodes {
             1 => "A ranking needs at least two episodes.",
             _ => "Nothing is ranked: no condition varies by chance alone.",
         };
         return Section::new("Which conditions matter", vec![Block::text(text)]);
     }
     // Of a design whose episodes are not independent the strongest are shown as they are.
-    let tested = (0..sheet.rows()).any(|row| sheet.real(row, "p_holm").is_finite());
+    let tested = (0..table.rows()).any(|row| table.real(row, "p_holm").is_finite());
     let mut grid = Grid::new([
         "what",
         "condition",
@@ -41,10 +41,10 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
     let mut of_ratios = grid.clone();
     let mut strongest: Option<(String, String)> = None;
     let mut listed: BTreeMap<String, usize> = BTreeMap::new();
-    for row in 0..sheet.rows() {
-        let text = |name: &str| sheet.text(row, name);
-        let what = target(sheet, row);
-        let p = sheet.real(row, "p_holm");
+    for row in 0..table.rows() {
+        let text = |name: &str| table.text(row, name);
+        let what = target(table, row);
+        let p = table.real(row, "p_holm");
         // Tables are sorted by strength; of those that chance explains as well, nothing is told.
         if tested && (p.is_nan() || p > SIGNIFICANCE) {
             continue;
@@ -58,10 +58,10 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
             strongest = Some((text("condition").into(), text("group").into()));
         }
         let ends = [
-            sheet.real(row, "trend_lower"),
-            sheet.real(row, "trend_upper"),
+            table.real(row, "trend_lower"),
+            table.real(row, "trend_upper"),
         ];
-        let controller = evidence.controller(text("controller"));
+        let controller = data.controller(text("controller"));
         let own = if text("against").is_empty() {
             &mut grid
         } else {
@@ -69,18 +69,18 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
         };
         own.rows.push(vec![
             Cell::text(what),
-            Cell::text(title(&evidence.campaign, text("condition"))),
+            Cell::text(title(&data.campaign, text("condition"))),
             Cell::Spreads(vec![Spread {
-                value: sheet.real(row, "trend"),
+                value: table.real(row, "trend"),
                 interval: ends.iter().all(|end| end.is_finite()).then_some(ends),
-                ink: Color::Series(controller.unwrap_or_default()),
+                color: Color::Series(controller.unwrap_or_default()),
                 scale: Scale::Correlation,
             }]),
             Cell::number(format::p_value(p)),
-            Cell::number(format!("{:.0}", sheet.real(row, "episodes"))),
+            Cell::number(format!("{:.0}", table.real(row, "episodes"))),
         ]);
     }
-    let mut blocks = explained(evidence, tested, grid);
+    let mut blocks = explained(data, tested, grid);
     if !of_ratios.rows.is_empty() {
         blocks.push(Block::Folded(
             "What moves the comparisons".into(),
@@ -93,14 +93,14 @@ pub(crate) fn ranking(evidence: &RunData) -> Section {
         ));
     }
     if let Some((condition, group)) = strongest {
-        blocks.extend(bands(evidence, &condition, &group).map(Block::Figure));
+        blocks.extend(bands(data, &condition, &group).map(Block::Figure));
     }
     Section::new("Which conditions matter", blocks)
 }
 
 /// What a row of the ranking is about.
-fn target(sheet: &TableReader, row: usize) -> String {
-    let text = |name: &str| sheet.text(row, name);
+fn target(table: &TableReader, row: usize) -> String {
+    let text = |name: &str| table.text(row, name);
     match text("target") {
         "failure" => format!("failures of {}", text("controller")),
         "rmse" => format!("RMS error of {}, {}", text("controller"), text("group")),
@@ -114,10 +114,10 @@ fn target(sheet: &TableReader, row: usize) -> String {
 }
 
 /// The effects on failures and errors, and what is to be known of them.
-fn explained(evidence: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
+fn explained(data: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
     let mut blocks = Vec::new();
     if grid.rows.is_empty() {
-        let strata = match evidence.campaign.strata.all() {
+        let strata = match data.campaign.strata.all() {
             [] => "",
             _ => " What the faults of the strata do is shown above, stratum by stratum.",
         };
@@ -142,10 +142,10 @@ fn explained(evidence: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
 }
 
 /// Quantile bands of the RMS error over a condition.
-fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
-    let met = sizes(evidence, condition);
+fn bands(data: &RunData, condition: &str, group: &str) -> Option<Figure> {
+    let met = sizes(data, condition);
     let column = format!("rmse_{group}");
-    let errors = evidence.of_teams(&evidence.episodes, &column, |_| true);
+    let errors = data.of_teams(&data.episodes, &column, |_| true);
     let mut order: Vec<usize> = (0..met.len()).filter(|&k| met[k].is_finite()).collect();
     order.sort_by(|&a, &b| met[a].total_cmp(&met[b]));
     if order.len() < 5 * BINS {
@@ -182,8 +182,8 @@ fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
         marks.push(Mark::Band(band, Color::Series(index)));
         marks.push(Mark::Line(line, Color::Series(index), Stroke::Solid));
     }
-    let name = title(&evidence.campaign, condition);
-    let roles = evidence.campaign.channel_groups();
+    let name = title(&data.campaign, condition);
+    let roles = data.campaign.channel_groups();
     let unit = roles
         .iter()
         .find(|own| own.role.name() == group)
@@ -199,7 +199,7 @@ fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
             marks,
             ..Plot::default()
         }],
-        legend: evidence.legend(),
+        legend: data.legend(),
         caption: format!(
             "RMS error over {name}: median and the band from the 5th to the 95th percentile, {groups}. A band is left out where \
              its end diverges."
@@ -209,12 +209,12 @@ fn bands(evidence: &RunData, condition: &str, group: &str) -> Option<Figure> {
 
 /// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where
 /// it does not apply.
-fn sizes(evidence: &RunData, condition: &str) -> Vec<f64> {
-    let campaign = &evidence.campaign;
+fn sizes(data: &RunData, condition: &str) -> Vec<f64> {
+    let campaign = &data.campaign;
     let all = conditions(campaign);
     let measured = all.iter().find(|own| own.key == condition);
     let size = |episode| measured?.of(&draw(campaign, episode).applied(campaign));
-    let sizes: Vec<Option<f64>> = (0..evidence.manifest.episodes).map(size).collect();
+    let sizes: Vec<Option<f64>> = (0..data.manifest.episodes).map(size).collect();
     let drawn = by_chance(campaign, condition, &sizes);
     drawn
         .into_iter()
@@ -223,17 +223,17 @@ fn sizes(evidence: &RunData, condition: &str) -> Vec<f64> {
 }
 
 /// The ranges that were really drawn.
-pub(crate) fn drawn(evidence: &RunData) -> Section {
-    let sheet = &evidence.episodes;
-    let first = evidence.campaign.controllers.first();
-    let rows: Vec<usize> = (0..sheet.rows())
-        .filter(|&row| first.is_some_and(|name| **name == *sheet.text(row, "controller")))
+pub(crate) fn drawn(data: &RunData) -> Section {
+    let table = &data.episodes;
+    let first = data.campaign.controllers.first();
+    let rows: Vec<usize> = (0..table.rows())
+        .filter(|&row| first.is_some_and(|name| **name == *table.text(row, "controller")))
         .collect();
     // Columns of one quantity, which differ in the channel, belong together.
     let mut quantities: Vec<(String, Vec<&String>)> = Vec::new();
-    let begin = sheet.names().iter().position(|name| name == "mass_scale");
-    for column in sheet.names().iter().skip(begin.unwrap_or(usize::MAX)) {
-        let mut channels = evidence.campaign.channels().iter();
+    let begin = table.names().iter().position(|name| name == "mass_scale");
+    for column in table.names().iter().skip(begin.unwrap_or(usize::MAX)) {
+        let mut channels = data.campaign.channels().iter();
         let quantity = channels
             .find_map(|channel| column.strip_suffix(&format!("_{channel}")))
             .unwrap_or(column);
@@ -254,13 +254,13 @@ pub(crate) fn drawn(evidence: &RunData) -> Section {
     for (quantity, columns) in &quantities {
         let cells = rows
             .iter()
-            .flat_map(|&row| columns.iter().map(move |column| sheet.real(row, column)));
+            .flat_map(|&row| columns.iter().map(move |column| table.real(row, column)));
         let mut values: Vec<f64> = cells.filter(|value| value.is_finite()).collect();
         values.sort_by(f64::total_cmp);
         if values.is_empty() {
             continue;
         }
-        let name = title(&evidence.campaign, quantity);
+        let name = title(&data.campaign, quantity);
         if let Some(flag) = name.strip_suffix(" occurs") {
             let share = values.iter().sum::<f64>() / values.len() as f64;
             let mut row = vec![
@@ -301,8 +301,8 @@ pub(crate) fn drawn(evidence: &RunData) -> Section {
 }
 
 /// The worst episodes of each controller, and how to see them.
-pub(crate) fn worst(evidence: &RunData) -> Section {
-    let sheet = &evidence.worst;
+pub(crate) fn worst(data: &RunData) -> Section {
+    let table = &data.worst;
     let mut grid = Grid::new([
         "controller",
         "rank",
@@ -315,30 +315,30 @@ pub(crate) fn worst(evidence: &RunData) -> Section {
         "replay",
     ]);
     let mut rest = grid.clone();
-    for row in 0..sheet.rows() {
-        let controller = sheet.text(row, "controller");
-        let episode = sheet.real(row, "episode");
-        let excess = sheet.real(row, "largest_error_over_limit");
-        let rank = sheet.real(row, "rank");
+    for row in 0..table.rows() {
+        let controller = table.text(row, "controller");
+        let episode = table.real(row, "episode");
+        let excess = table.real(row, "largest_error_over_limit");
+        let rank = table.real(row, "rank");
         let own = if rank <= WORST { &mut grid } else { &mut rest };
         own.rows.push(vec![
             Cell::text(controller),
             Cell::number(format!("{rank:.0}")),
             Cell::number(format!("{episode:.0}")),
-            Cell::text(sheet.text(row, "status")),
-            Cell::number(format::number(sheet.real(row, "failed_at_s"))),
+            Cell::text(table.text(row, "status")),
+            Cell::number(format::number(table.real(row, "failed_at_s"))),
             Cell::number(format::number(excess)),
             Cell::text(format!(
                 "{} of agent {:.0}",
-                sheet.text(row, "channel"),
-                sheet.real(row, "agent")
+                table.text(row, "channel"),
+                table.real(row, "agent")
             )),
-            Cell::text(match sheet.text(row, "faults") {
+            Cell::text(match table.text(row, "faults") {
                 "" => "none",
                 faults => faults,
             }),
             Cell::Code(command(
-                &evidence.dir,
+                &data.dir,
                 u32::try_from(whole(episode)).unwrap_or(u32::MAX),
                 controller,
             )),

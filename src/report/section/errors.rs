@@ -12,8 +12,8 @@ use crate::util::format;
 const MOST_POINTS: usize = 300;
 
 /// The comparison of every pair.
-pub(crate) fn pairs(evidence: &RunData) -> Section {
-    let sheet = &evidence.comparison;
+pub(crate) fn pairs(data: &RunData) -> Section {
+    let sheet = &data.comparison;
     if sheet.rows() == 0 {
         let text = "One controller has nothing to be compared with.";
         return Section::new("Pair by pair", vec![Block::text(text)]);
@@ -22,7 +22,7 @@ pub(crate) fn pairs(evidence: &RunData) -> Section {
         difference,
         log_ratio,
         interval,
-    } = Columns::of(evidence);
+    } = Columns::of(data);
     let mut failures = Grid::new([
         "pair",
         "only the first fails",
@@ -93,9 +93,9 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(evidence: &RunData) -> Self {
-        let sheet = &evidence.comparison;
-        let replicates = evidence.campaign.sampling.replicates().is_some();
+    fn of(data: &RunData) -> Self {
+        let sheet = &data.comparison;
+        let replicates = data.campaign.sampling.replicates().is_some();
         let known =
             (0..sheet.rows()).any(|row| sheet.real(row, "log_ratio_replicates").is_finite());
         let difference = match replicates {
@@ -143,13 +143,13 @@ fn failures_of(sheet: &TableReader, row: usize, pair: &str, difference: &str) ->
 }
 
 /// The distributions of the RMS error.
-pub(crate) fn distributions(evidence: &RunData) -> Section {
-    let roles = evidence.campaign.channel_groups();
-    let max_rmse = &evidence.campaign.verdict.max_rmse;
+pub(crate) fn distributions(data: &RunData) -> Section {
+    let roles = data.campaign.channel_groups();
+    let max_rmse = &data.campaign.verdict.max_rmse;
     let limit = |channel: usize| max_rmse.get(channel).copied().unwrap_or(f64::INFINITY);
     let groups = roles.iter().map(|group| {
         let column = format!("rmse_{}", group.role.name());
-        let values = evidence.of_teams(&evidence.episodes, &column, |_| true);
+        let values = data.of_teams(&data.episodes, &column, |_| true);
         ecdf(
             group.role.name(),
             group.role,
@@ -157,30 +157,30 @@ pub(crate) fn distributions(evidence: &RunData) -> Section {
             &values,
         )
     });
-    let names = evidence.campaign.channels();
+    let names = data.campaign.channels();
     let channels = roles.iter().flat_map(|group| {
         let own = names.get(group.channels.clone()).unwrap_or_default();
         own.iter().enumerate().map(move |(place, name)| {
-            let sheet = &evidence.channels;
+            let sheet = &data.channels;
             let of_channel = |row: usize| sheet.text(row, "channel") == &**name;
             ecdf(
                 name,
                 group.role,
                 limit(group.channels.start + place),
-                &evidence.of_teams(sheet, "rmse", of_channel),
+                &data.of_teams(sheet, "rmse", of_channel),
             )
         })
     });
     let figure = |panels: Vec<Plot>, of: &str| Figure {
         panels,
-        legend: evidence.legend(),
+        legend: data.legend(),
         caption: format!(
             "Share of the episodes whose RMS error over the team, {of}, from settle_s on, is at most the value. What \
              diverges or lies beyond the frame is missing: its curve ends below 1."
         ),
     };
-    let table = Block::Grid(quantiles(evidence));
-    let blocks = match evidence.manifest.episodes {
+    let table = Block::Grid(quantiles(data));
+    let blocks = match data.manifest.episodes {
         0 | 1 => vec![table],
         _ => vec![
             Block::Figure(figure(groups.collect(), "by channel group")),
@@ -195,7 +195,7 @@ pub(crate) fn distributions(evidence: &RunData) -> Section {
 }
 
 /// Errors are drawn up to so many times the largest median, or the limit of the RMS error if that is more: those of
-/// flights that are about to diverge would leave no room for the others.
+/// episodes that are about to diverge would leave no room for the others.
 const FRAME: f64 = 20.0;
 
 /// The empirical distribution of values by controller.
@@ -244,8 +244,8 @@ fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Plot
     }
 }
 
-fn quantiles(evidence: &RunData) -> Grid {
-    let sheet = &evidence.summary;
+fn quantiles(data: &RunData) -> Grid {
+    let sheet = &data.summary;
     let mut grid = Grid::new([
         "controller",
         "error",
@@ -259,7 +259,7 @@ fn quantiles(evidence: &RunData) -> Grid {
             _ => "largest",
         };
         let group = sheet.text(row, "group");
-        let roles = evidence.campaign.channel_groups();
+        let roles = data.campaign.channel_groups();
         let role = roles.iter().find(|own| own.role.name() == group);
         let Some(role) = role else { continue };
         let cell = |q: &str| {

@@ -9,25 +9,25 @@ use crate::results::RateMethod;
 use crate::util::format::{self, sentence};
 
 /// Failure rates with intervals, requirements, and the share of episodes still good over time.
-pub(crate) fn section(evidence: &RunData) -> Section {
-    let mut blocks = vec![Block::Text(meaning(evidence))];
-    let caveats = caveats(&evidence.campaign, &evidence.manifest);
+pub(crate) fn section(data: &RunData) -> Section {
+    let mut blocks = vec![Block::Text(meaning(data))];
+    let caveats = caveats(&data.campaign, &data.manifest);
     blocks.extend(caveats.iter().map(|caveat| Block::Text(sentence(caveat))));
-    blocks.push(Block::Grid(rates(evidence)));
-    if !evidence.manifest.requirements.is_empty() {
-        blocks.push(Block::Grid(requirements(evidence)));
+    blocks.push(Block::Grid(rates(data)));
+    if !data.manifest.requirements.is_empty() {
+        blocks.push(Block::Grid(requirements(data)));
     }
-    blocks.push(Block::Figure(survival(evidence)));
+    blocks.push(Block::Figure(survival(data)));
     Section::new("Failures", blocks)
 }
 
-fn meaning(evidence: &RunData) -> String {
-    let verdict = &evidence.campaign.verdict;
-    let agents = match evidence.campaign.team {
-        1 => format!("its {}", evidence.campaign.agent.noun(1)),
-        _ => format!("any of its {}", evidence.campaign.agent.plural()),
+fn meaning(data: &RunData) -> String {
+    let verdict = &data.campaign.verdict;
+    let agents = match data.campaign.team {
+        1 => format!("its {}", data.campaign.agent.noun(1)),
+        _ => format!("any of its {}", data.campaign.agent.plural()),
     };
-    let limits = evidence.campaign.channel_groups().into_iter().map(|group| {
+    let limits = data.campaign.channel_groups().into_iter().map(|group| {
         let of_group = |limits: &[f64]| {
             let own = limits.get(group.channels.clone()).unwrap_or_default();
             let (low, high) = (
@@ -52,9 +52,9 @@ fn meaning(evidence: &RunData) -> String {
     });
     format!(
         "An episode fails if {agents} diverges, or leaves its limits from {} s on ({}). Intervals: {}.",
-        f64::from(evidence.campaign.time.settle_step) * evidence.campaign.time.step_s,
+        f64::from(data.campaign.time.settle_step) * data.campaign.time.step_s,
         limits.collect::<Vec<_>>().join("; "),
-        intervals(&evidence.campaign),
+        intervals(&data.campaign),
     )
 }
 
@@ -68,22 +68,22 @@ pub(crate) fn intervals(campaign: &Campaign) -> &'static str {
 }
 
 /// The failure rate of a row of the summary.
-pub(crate) fn rate(evidence: &RunData, row: usize, ink: Color) -> Spread {
-    let sheet = &evidence.summary;
-    let method = RateMethod::of(&evidence.campaign).name();
-    let end = |side: &str| sheet.real(row, &format!("failure_rate_{method}_{side}"));
+pub(crate) fn rate(data: &RunData, row: usize, color: Color) -> Spread {
+    let table = &data.summary;
+    let method = RateMethod::of(&data.campaign).name();
+    let end = |side: &str| table.real(row, &format!("failure_rate_{method}_{side}"));
     let ends = [end("lower"), end("upper")];
     let interval = ends.iter().all(|end| end.is_finite()).then_some(ends);
     Spread {
         scale: Scale::Share,
-        value: sheet.real(row, "failure_rate"),
+        value: table.real(row, "failure_rate"),
         interval,
-        ink,
+        color,
     }
 }
 
-fn rates(evidence: &RunData) -> Grid {
-    let sheet = &evidence.summary;
+fn rates(data: &RunData) -> Grid {
+    let table = &data.summary;
     let mut grid = Grid::new([
         "controller",
         "failure rate",
@@ -92,20 +92,20 @@ fn rates(evidence: &RunData) -> Grid {
         "diverged",
         "95 % sure below",
     ]);
-    for (index, name) in evidence.campaign.controllers.iter().enumerate() {
+    for (index, name) in data.campaign.controllers.iter().enumerate() {
         let wanted = [("controller", &**name), ("stratum", ALL)];
-        let Some(row) = sheet.find(&wanted).next() else {
+        let Some(row) = table.find(&wanted).next() else {
             continue;
         };
-        let count = |column: &str| Cell::number(format!("{:.0}", sheet.real(row, column)));
-        let bound = sheet.real(row, "failure_rate_upper_95");
+        let count = |column: &str| Cell::number(format!("{:.0}", table.real(row, column)));
+        let bound = table.real(row, "failure_rate_upper_95");
         grid.rows.push(vec![
             Cell::text(&**name),
-            Cell::Spreads(vec![rate(evidence, row, Color::Series(index))]),
+            Cell::Spreads(vec![rate(data, row, Color::Series(index))]),
             Cell::number(format!(
                 "{:.0} of {:.0}",
-                sheet.real(row, "failed"),
-                sheet.real(row, "n")
+                table.real(row, "failed"),
+                table.real(row, "n")
             )),
             count("exceeded"),
             count("diverged"),
@@ -115,7 +115,7 @@ fn rates(evidence: &RunData) -> Grid {
     grid
 }
 
-fn requirements(evidence: &RunData) -> Grid {
+fn requirements(data: &RunData) -> Grid {
     let mut grid = Grid::new([
         "requirement",
         "stratum",
@@ -123,7 +123,7 @@ fn requirements(evidence: &RunData) -> Grid {
         "found",
         "failed",
     ]);
-    for result in &evidence.manifest.requirements {
+    for result in &data.manifest.requirements {
         let met = result.is_met();
         grid.rows.push(vec![
             Cell::Verdict(
@@ -144,24 +144,24 @@ fn requirements(evidence: &RunData) -> Grid {
 }
 
 /// The share of episodes that have not failed yet, over time.
-fn survival(evidence: &RunData) -> Figure {
-    let campaign = &evidence.campaign;
-    let episodes = evidence.manifest.episodes as usize;
+fn survival(data: &RunData) -> Figure {
+    let campaign = &data.campaign;
+    let episodes = data.manifest.episodes as usize;
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
     let mut failed_at = vec![vec![f64::INFINITY; episodes]; campaign.controllers.len()];
-    let sheet = &evidence.episodes;
-    for row in 0..sheet.rows() {
-        let controller = evidence.controller(sheet.text(row, "controller"));
+    let table = &data.episodes;
+    for row in 0..table.rows() {
+        let controller = data.controller(table.text(row, "controller"));
         let place = controller.and_then(|index| {
             failed_at
                 .get_mut(index)?
-                .get_mut(whole(sheet.real(row, "episode")))
+                .get_mut(whole(table.real(row, "episode")))
         });
         let Some(first) = place else { continue };
-        let time_s = sheet.real(row, "failed_at_s");
+        let time_s = table.real(row, "failed_at_s");
         if time_s.is_finite() {
             *first = first.min(time_s);
-        } else if sheet.text(row, "status") != "ok" {
+        } else if table.text(row, "status") != "ok" {
             // The RMS error is judged at the end.
             *first = first.min(end_s);
         }
@@ -196,7 +196,7 @@ fn survival(evidence: &RunData) -> Figure {
             marks: marks.collect(),
             ..Plot::default()
         }],
-        legend: evidence.legend(),
+        legend: data.legend(),
         caption: "Share of the episodes that have not failed yet. What breaks the limit of the RMS error alone counts as failed \
                   at the end."
             .into(),

@@ -1,13 +1,14 @@
-//! The gains that flew, what is certified about them, and what the flights show beside it.
+//! The gains that were used, what is certified about them, and what the episodes show beside it.
 
 use crate::controllers::ChannelController;
 use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::report::run_data::RunData;
+use crate::simulation::attenuation::INEQUALITY;
 use crate::util::format;
 
-/// Gains, poles, margins, certificate, and the attenuation that flights showed.
-pub(crate) fn section(evidence: &RunData) -> Section {
-    let groups = evidence.campaign.channel_groups();
+/// Gains, poles, margins, certificate, and the attenuation that episodes showed.
+pub(crate) fn section(data: &RunData) -> Section {
+    let groups = data.campaign.channel_groups();
     let mut margins = Grid::new([
         "controller",
         "channels",
@@ -20,7 +21,7 @@ pub(crate) fn section(evidence: &RunData) -> Section {
         "slowest and fastest pole, 1/s",
     ]);
     let mut folded = Vec::new();
-    for controller in &evidence.gains.controllers {
+    for controller in &data.gains.controllers {
         for (group, own) in groups.iter().zip(&controller.groups) {
             margins
                 .rows
@@ -37,10 +38,11 @@ pub(crate) fn section(evidence: &RunData) -> Section {
     let mut blocks = vec![
         Block::Grid(margins),
         Block::Folded("Gains, poles and checks".into(), folded),
-        Block::text(attenuation_explained(evidence)),
+        Block::text(attenuation_explained(data)),
     ];
-    let attenuation = attenuation(evidence);
+    let attenuation = attenuation(data);
     if !attenuation.rows.is_empty() {
+        blocks.push(Block::text(format!("{INEQUALITY}.")));
         blocks.push(Block::Grid(attenuation));
     }
     Section::new("Gains and certificate", blocks)
@@ -111,8 +113,8 @@ fn numbers(own: &ChannelController) -> String {
     text
 }
 
-fn attenuation_explained(evidence: &RunData) -> &'static str {
-    match &evidence.manifest.cross_check {
+fn attenuation_explained(data: &RunData) -> &'static str {
+    match &data.manifest.cross_check {
         Some(check) if !check.attenuation.is_empty() => {
             "Attenuation of the episodes that were cross-checked: the square root of the left side of (24) without V(0), the \
              largest of the channels, beside the certified level; and whether (24) with V(0) holds. A sample shows what \
@@ -128,7 +130,7 @@ fn attenuation_explained(evidence: &RunData) -> &'static str {
     }
 }
 
-fn attenuation(evidence: &RunData) -> Grid {
+fn attenuation(data: &RunData) -> Grid {
     let mut grid = Grid::new([
         "controller",
         "channels",
@@ -137,7 +139,7 @@ fn attenuation(evidence: &RunData) -> Grid {
         "(24)",
         "applicable channels",
     ]);
-    let check = evidence.manifest.cross_check.as_ref();
+    let check = data.manifest.cross_check.as_ref();
     for group in check.iter().flat_map(|check| &check.attenuation) {
         let number = |value: Option<f64>| Cell::number(format::number(value.unwrap_or(f64::NAN)));
         let holds = match (&group.largest, group.violated) {

@@ -6,8 +6,8 @@ use crate::simulation::Segment;
 use crate::simulation::cross_check::CrossCheck;
 
 /// Version, seed, machine, times, cross-check, and the campaign's text.
-pub(crate) fn section(evidence: &RunData) -> Section {
-    let manifest = &evidence.manifest;
+pub(crate) fn section(data: &RunData) -> Section {
+    let manifest = &data.manifest;
     let mut grid = Grid::new(["what", "value"]);
     let mut add = |name: &str, value: String| {
         grid.rows.push(vec![Cell::text(name), Cell::text(value)]);

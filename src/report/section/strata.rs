@@ -7,12 +7,12 @@ use crate::report::run_data::RunData;
 use crate::util::format;
 
 /// The forest of failure rates and the growth of the errors; none of a campaign without strata.
-pub(crate) fn section(evidence: &RunData) -> Option<Section> {
-    let strata = evidence.campaign.strata.all();
+pub(crate) fn section(data: &RunData) -> Option<Section> {
+    let strata = data.campaign.strata.all();
     if strata.is_empty() {
         return None;
     }
-    let names: Vec<String> = evidence
+    let names: Vec<String> = data
         .campaign
         .controllers
         .iter()
@@ -31,9 +31,9 @@ pub(crate) fn section(evidence: &RunData) -> Option<Section> {
         let mut rates = Vec::new();
         for (index, name) in names.iter().enumerate() {
             let wanted = [("stratum", &*stratum.name), ("controller", name)];
-            if let Some(row) = evidence.summary.find(&wanted).next() {
-                n = evidence.summary.real(row, "n");
-                rates.push(rate(evidence, row, Color::Series(index)));
+            if let Some(row) = data.summary.find(&wanted).next() {
+                n = data.summary.real(row, "n");
+                rates.push(rate(data, row, Color::Series(index)));
             }
         }
         forest.rows.push(vec![
@@ -42,7 +42,7 @@ pub(crate) fn section(evidence: &RunData) -> Option<Section> {
             Cell::number(format!("{n:.0}")),
         ]);
     }
-    let sentences = evidence.manifest.harm.iter();
+    let sentences = data.manifest.harm.iter();
     let mut blocks: Vec<Block> = sentences
         .map(|own| Block::Text(format!("{own}.")))
         .collect();
@@ -51,31 +51,31 @@ pub(crate) fn section(evidence: &RunData) -> Option<Section> {
          the colours of the figures.",
     ));
     blocks.push(Block::Grid(forest));
-    if evidence.screening.rows() > 0 {
+    if data.screening.rows() > 0 {
         blocks.push(Block::Folded(
             "Growth of the errors".into(),
-            vec![Block::Grid(growth(evidence))],
+            vec![Block::Grid(growth(data))],
         ));
     }
     Some(Section::new("By stratum", blocks))
 }
 
-fn growth(evidence: &RunData) -> Grid {
-    let sheet = &evidence.screening;
-    let roles = evidence.campaign.channel_groups();
+fn growth(data: &RunData) -> Grid {
+    let table = &data.screening;
+    let roles = data.campaign.channel_groups();
     let mut grid = Grid::new(["controller", "stratum", "against"]);
     let groups = roles.iter().map(|group| group.role.name());
     grid.head
         .extend(groups.map(|name| format!("median RMS error grows by a factor of [95 %], {name}")));
-    for row in 0..sheet.rows() {
+    for row in 0..table.rows() {
         let mut cells = vec![
-            Cell::text(sheet.text(row, "controller")),
-            Cell::text(sheet.text(row, "stratum")),
-            Cell::text(sheet.text(row, "reference")),
+            Cell::text(table.text(row, "controller")),
+            Cell::text(table.text(row, "stratum")),
+            Cell::text(table.text(row, "reference")),
         ];
         for group in &roles {
             let factor = |side: &str| {
-                sheet
+                table
                     .real(row, &format!("log_growth_{}{side}", group.role.name()))
                     .exp()
             };

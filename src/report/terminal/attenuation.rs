@@ -1,8 +1,8 @@
-//! What inequality (24) says about flights.
+//! What inequality (24) says about episodes.
 
 use super::style::{bad, judged};
 use super::text::line;
-use crate::simulation::attenuation::{Attenuations, GroupAttenuation};
+use crate::simulation::attenuation::{Attenuations, GroupAttenuation, INEQUALITY};
 use crate::util::format::number;
 
 /// The heads of what stands behind the errors of a replay, where (24) applies to some channels.
@@ -30,7 +30,7 @@ pub(crate) fn of_channel(found: &Attenuations, agent: usize, channel: usize) -> 
     }
 }
 
-/// Why (24) does not apply to some channels of a replay, each reason once.
+/// What (24) says where it applies to some channels of a replay, and why it does not to others, each reason once.
 pub(crate) fn explanation(found: &Attenuations) -> String {
     let mut reasons: Vec<(String, usize)> = Vec::new();
     for reason in found
@@ -46,6 +46,9 @@ pub(crate) fn explanation(found: &Attenuations) -> String {
     }
     let all = found.iter().map(Vec::len).sum::<usize>();
     let mut text = String::new();
+    if !heading(found).is_empty() {
+        line(&mut text, INEQUALITY);
+    }
     for (reason, count) in reasons {
         let of = format!("(24) is not applicable to {count} of {all} channels");
         line(&mut text, &format!("{of}: {reason}"));
@@ -53,7 +56,7 @@ pub(crate) fn explanation(found: &Attenuations) -> String {
     text
 }
 
-/// What (24) says about the channel groups of the flights of a cross-check, a line each.
+/// What (24) says about the channel groups of the episodes of a cross-check, a line each.
 pub(crate) fn groups(groups: &[GroupAttenuation]) -> String {
     let mut text = String::new();
     for group in groups {
@@ -73,6 +76,9 @@ pub(crate) fn groups(groups: &[GroupAttenuation]) -> String {
             }
         };
         line(&mut text, &format!("{name}: {found}"));
+    }
+    if groups.iter().any(|group| group.largest.is_some()) {
+        line(&mut text, INEQUALITY);
     }
     text
 }

@@ -1,4 +1,4 @@
-//! How long a campaign would fly, roughly.
+//! How long a campaign would take, roughly.
 
 use crate::agent::Agent;
 use crate::campaign::Campaign;
@@ -26,8 +26,8 @@ const BIPED: Cost = Cost {
 
 /// Steps of single agents in a campaign.
 pub(super) fn steps(campaign: &Campaign) -> f64 {
-    let flights = campaign.team * campaign.controllers.len();
-    f64::from(campaign.time.steps) * f64::from(campaign.episodes) * flights as f64
+    let simulated = campaign.team * campaign.controllers.len();
+    f64::from(campaign.time.steps) * f64::from(campaign.episodes) * simulated as f64
 }
 
 /// How long they take on one core with 16 lanes, s.

@@ -42,7 +42,7 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
     text
 }
 
-/// What was flown on what, and the cross-check.
+/// What was simulated on what, and the cross-check.
 fn simulated(campaign: &Campaign, manifest: &Manifest) -> String {
     let mut text = String::new();
     let precision = format!("{:?}", manifest.precision).to_lowercase();

@@ -101,8 +101,8 @@ fn design(campaign: &Campaign) -> Vec<String> {
     sentences
 }
 
-/// What is flown in each stratum. Those of a fault alone, which has their name, are told together where they are of one
-/// size.
+/// What is simulated in each stratum. Those of a fault alone, which has their name, are told together where they are of
+/// one size.
 fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
     let turn = campaign.strata.turn();
     let alone = |stratum: &Stratum| match &stratum.faults {

@@ -7,7 +7,7 @@ use crate::campaign::{Campaign, DisturbanceKind, Fault, FaultTarget, IntegralKin
 use crate::draw::{AgentDraw, FaultDraw};
 use thiserror::Error;
 
-/// Why (24) says nothing about a channel of a flight.
+/// Why (24) says nothing about a channel of an episode.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NotApplicable {
     /// A PID.
@@ -43,7 +43,7 @@ pub enum NotApplicable {
         /// What it is.
         kind: &'static str,
     },
-    /// A flight that left the numbers.
+    /// An episode that left the numbers.
     #[error("the trajectory is not finite from {t_s:.3} s on")]
     NotFinite {
         /// Since when, s.

@@ -38,11 +38,11 @@ pub struct Sample {
     pub estimate: [f64; LOOP_STATES],
     /// f1 of (14) and f2 of (16).
     pub faults: [f64; 2],
-    /// The feedback that the observer is told was commanded.
+    /// The feedback that was applied, of which the observer knows.
     pub applied_feedback: f64,
 }
 
-/// A flight of a channel as far as (24) is taken from it.
+/// An episode of a channel as far as (24) is taken from it.
 #[derive(Debug, Clone, Copy)]
 pub struct Stretch<'a> {
     /// Time between two samples, s.
@@ -53,7 +53,7 @@ pub struct Stretch<'a> {
     pub from: usize,
 }
 
-/// Both sides of (24) for one channel of a flight.
+/// Both sides of (24) for one channel of an episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attenuation {
     /// Integral of ebar' Q1 ebar + e~' Q2 e~ + R u_fb^2: what is to stay small.
@@ -67,7 +67,7 @@ pub struct Attenuation {
 }
 
 impl Attenuation {
-    /// The square root of the left side of (24) without V(0). A flight that starts far off may exceed the certified
+    /// The square root of the left side of (24) without V(0). An episode that starts far off may exceed the certified
     /// level.
     #[must_use]
     pub fn level(&self) -> f64 {
@@ -105,7 +105,7 @@ struct Instant {
 }
 
 impl AttenuationInequality {
-    /// The theorem for gains that fly and their certificate.
+    /// The inequality for gains that are simulated and their certificate.
     ///
     /// # Errors
     /// If (27) does not hold for them: the certificate belongs to other gains or weights, or was changed.
@@ -130,7 +130,7 @@ impl AttenuationInequality {
         })
     }
 
-    /// Both sides of (24) over a flight, from stretches of it that follow each other; the first begins at t = 0.
+    /// Both sides of (24) over an episode, from stretches of it that follow each other; the first begins at t = 0.
     ///
     /// Integrals by the trapezoidal rule, derivatives of the faults by central differences: the result converges with
     /// the square of the step, with the step itself where the taps' spacing is no multiple of it.
@@ -167,26 +167,26 @@ impl AttenuationInequality {
             samples,
             from,
         } = *stretch;
-        let flight = ChannelTrajectory {
-            theorem: self,
+        let trajectory = ChannelTrajectory {
+            inequality: self,
             stretch,
             lags: self.lags(step_s),
             rates: &[1, 2].map(|width| rates(step_s, samples, width)),
         };
         let mut sums = Sums::default();
         let mut estimate = self.start(&samples[0]);
-        let mut start = flight.instant(from, from);
+        let mut start = trajectory.instant(from, from);
         for k in 0..samples.len() - 1 {
             let next = self.advance(&estimate, &samples[k..k + 2], step_s);
             if k >= from {
                 if k == 0 {
                     sums.initial = self.lyapunov(&start.truth, &estimate);
-                } else if flight.begins(k) {
+                } else if trajectory.begins(k) {
                     let before = self.lyapunov(&start.truth, &estimate);
-                    start = flight.instant(k, k);
+                    start = trajectory.instant(k, k);
                     sums.initial += self.lyapunov(&start.truth, &estimate) - before;
                 }
-                let end = flight.instant(k + 1, k);
+                let end = trajectory.instant(k + 1, k);
                 for (instant, estimate) in [(&start, &estimate), (&end, &next)] {
                     sums.weighted += self.weighted(&instant.truth, estimate) * step_s / 2.0;
                     for (energy, v) in sums.energy.iter_mut().zip(&instant.model_error) {
@@ -201,7 +201,7 @@ impl AttenuationInequality {
         sums
     }
 
-    /// Refuses a flight whose loop is not that of (19) to (21).
+    /// Refuses an episode whose loop is not that of (19) to (21).
     fn require_loop(&self, stretch: &Stretch<'_>) -> Result<(), NotApplicable> {
         let Stretch {
             step_s, samples, ..
@@ -274,7 +274,7 @@ impl AttenuationInequality {
         full
     }
 
-    /// The observer's state at the next sample: what the loop integrates as it flew, the taps that it leaves out, a
+    /// The observer's state at the next sample: what the loop integrates as it ran, the taps that it leaves out, a
     /// delay line driven by the taps before and by the innovation, by the implicit trapezoidal rule.
     fn advance(&self, estimate: &Full, samples: &[Sample], step_s: f64) -> Full {
         let mut next = self.start(&samples[1]);
@@ -355,9 +355,9 @@ impl Sums {
     }
 }
 
-/// A stretch of a flight and the derivatives of its faults.
+/// A stretch of an episode and the derivatives of its faults.
 struct ChannelTrajectory<'a> {
-    theorem: &'a AttenuationInequality,
+    inequality: &'a AttenuationInequality,
     stretch: &'a Stretch<'a>,
     /// By how many samples each tap lags.
     lags: Vec<f64>,
@@ -376,11 +376,11 @@ impl ChannelTrajectory<'_> {
     /// The channel at sample `k`, with the taps of the faults that have begun by sample `since`: a tap that lags is
     /// zero until then.
     fn instant(&self, k: usize, since: usize) -> Instant {
-        let theorem = self.theorem;
+        let inequality = self.inequality;
         let mut truth = [0.0; MOST_STATES];
         let mut model_error = [[0.0; MOST_STATES]; 2];
         truth[..ERROR_STATES].copy_from_slice(&self.stretch.samples[k].error);
-        for (fault, (first, taps)) in theorem.taps().into_iter().enumerate() {
+        for (fault, (first, taps)) in inequality.taps().into_iter().enumerate() {
             for tap in 0..taps {
                 let lag = self.lags[tap];
                 if lag <= since as f64 {
@@ -393,7 +393,7 @@ impl ChannelTrajectory<'_> {
             }
             for row in first..first + taps {
                 let expected: f64 = (first..first + taps)
-                    .map(|column| theorem.a[(row, column)] * truth[column])
+                    .map(|column| inequality.a[(row, column)] * truth[column])
                     .sum();
                 for v in &mut model_error {
                     v[row] -= expected;

@@ -1,5 +1,5 @@
-//! The theorem beside the experiment: the attenuation that a flight under the fault-tolerant controller shows,
-//! inequality (24) of the paper, beside the level that its gains certify.
+//! The attenuation that an episode under the fault-tolerant controller shows, inequality (24) of the paper, beside the
+//! level that its gains certify.
 //!
 #![doc = include_str!("README.md")]
 
@@ -21,7 +21,11 @@ use serde::{Deserialize, Serialize};
 /// A pole times a step at which the central differences of its decay are right to 2 %.
 const RESOLVED: f64 = 0.25;
 
-/// What (24) says about each channel of a flight, `[agent][channel]`.
+/// What inequality (24) says, for readers without the paper.
+pub const INEQUALITY: &str = "(24) of the paper: weighted errors and control effort are at most the square of the attenuation level times \
+     the energy of the model error (faults and disturbances as the observer meets them), plus V(0) for the initial state";
+
+/// What (24) says about each channel of an episode, `[agent][channel]`.
 pub type Attenuations = Vec<Vec<Result<Attenuation, NotApplicable>>>;
 
 /// The trajectory of an episode in double precision, as (24) needs it.
@@ -70,7 +74,7 @@ impl Start {
         })
     }
 
-    /// A campaign that flies the start and nothing more. What is drawn stays the same.
+    /// A campaign that simulates the start and nothing more. What is drawn stays the same.
     #[must_use]
     pub fn campaign(self, whole: &Campaign) -> Campaign {
         whole.clone().with(|campaign| {
@@ -81,13 +85,13 @@ impl Start {
     }
 }
 
-/// A controller whose flights (24) is asked about.
+/// A controller whose episodes (24) is asked about.
 pub struct AttenuationAnalysis<'a> {
     campaign: &'a Campaign,
     controller: &'a SimulatedController,
     index: usize,
     /// Of each channel group.
-    theorems: Vec<Result<AttenuationInequality, NotApplicable>>,
+    inequalities: Vec<Result<AttenuationInequality, NotApplicable>>,
     start: Option<Start>,
     /// What flies the start.
     flyer: Option<Cpu>,
@@ -108,8 +112,8 @@ impl<'a> AttenuationAnalysis<'a> {
             campaign,
             controller,
             index,
-            theorems: of_groups
-                .map(|(own, design)| theorem(own, design))
+            inequalities: of_groups
+                .map(|(own, design)| inequality(own, design))
                 .collect(),
             start,
             flyer,
@@ -138,7 +142,7 @@ impl<'a> AttenuationAnalysis<'a> {
     #[must_use]
     pub fn judge(&self, episode: &Episode, trajectory: &Trajectory) -> Attenuations {
         let step_s = self.campaign.time.step_s;
-        let of_channel = |agent, channel, theorem: &AttenuationInequality| {
+        let of_channel = |agent, channel, inequality: &AttenuationInequality| {
             let samples = |snapshots: &[Snapshot]| -> Vec<Sample> {
                 let of_instant = |snapshot| sample(snapshot, agent, channel);
                 snapshots.iter().map(of_instant).collect()
@@ -150,8 +154,8 @@ impl<'a> AttenuationAnalysis<'a> {
                 from,
             };
             match self.start {
-                None => theorem.attenuation(&[stretch(&whole, step_s, 0)]),
-                Some(Start { finer, steps }) => theorem.attenuation(&[
+                None => inequality.attenuation(&[stretch(&whole, step_s, 0)]),
+                Some(Start { finer, steps }) => inequality.attenuation(&[
                     stretch(&first, step_s / f64::from(finer), 0),
                     stretch(&whole, step_s, steps as usize),
                 ]),
@@ -161,20 +165,20 @@ impl<'a> AttenuationAnalysis<'a> {
             |(agent, channels): (usize, Vec<Result<&AttenuationInequality, NotApplicable>>)| {
                 let channels = channels.into_iter().enumerate();
                 channels
-                    .map(|(channel, theorem)| of_channel(agent, channel, theorem?))
+                    .map(|(channel, inequality)| of_channel(agent, channel, inequality?))
                     .collect()
             };
         let known = self.known(episode).into_iter().enumerate();
         known.map(of_agent).collect()
     }
 
-    /// The theorem of each channel, or what is known before the flight to keep it from saying anything:
+    /// The inequality of each channel, or what is known before the simulation to keep it from saying anything:
     /// `[agent][channel]`.
     fn known(&self, episode: &Episode) -> Vec<Vec<Result<&AttenuationInequality, NotApplicable>>> {
         let of_channel = |agent: usize, channel: usize| {
             let group = self.campaign.group_of(channel);
-            let theorem = self.theorems[group].as_ref().map_err(Clone::clone)?;
-            obstacle(self.campaign, &episode.agents[agent], channel).map_or(Ok(theorem), Err)
+            let inequality = self.inequalities[group].as_ref().map_err(Clone::clone)?;
+            obstacle(self.campaign, &episode.agents[agent], channel).map_or(Ok(inequality), Err)
         };
         let channels = self.campaign.channels().len();
         let of_agent = |agent| {
@@ -187,16 +191,16 @@ impl<'a> AttenuationAnalysis<'a> {
 
     /// Sums up what it says about some episodes, a row per channel group.
     #[must_use]
-    pub fn by_group(&self, flights: &[Attenuations]) -> Vec<GroupAttenuation> {
+    pub fn by_group(&self, episodes: &[Attenuations]) -> Vec<GroupAttenuation> {
         let groups = self.campaign.channel_groups().into_iter();
         groups
             .zip(&self.controller.groups)
-            .map(|(group, own)| GroupAttenuation::of(&self.controller.name, &group, own, flights))
+            .map(|(group, own)| GroupAttenuation::of(&self.controller.name, &group, own, episodes))
             .collect()
     }
 }
 
-fn theorem(
+fn inequality(
     own: &ChannelController,
     design: &ChannelDesign,
 ) -> Result<AttenuationInequality, NotApplicable> {
@@ -218,7 +222,7 @@ fn sample(snapshot: &Snapshot, agent: usize, channel: usize) -> Sample {
     }
 }
 
-/// What (24) says about one channel group of some flights under one controller.
+/// What (24) says about one channel group of some episodes under one controller.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupAttenuation {
@@ -245,9 +249,9 @@ impl GroupAttenuation {
         controller: &str,
         group: &ChannelGroup,
         own: &ChannelController,
-        flights: &[Attenuations],
+        episodes: &[Attenuations],
     ) -> Self {
-        let agents = flights.iter().flatten();
+        let agents = episodes.iter().flatten();
         let all: Vec<_> = agents
             .flat_map(|channels| &channels[group.channels.clone()])
             .collect();

@@ -13,22 +13,22 @@ const REVEALED: f64 = 5.0;
 const MUCH: f64 = 2.0;
 
 /// The amplitude of a channel's tracking error at a frequency.
-fn amplitude(flights: &Scenarios, simulated: Scenario, channel: usize, rad_s: f64) -> f64 {
-    let errors = flights.series(simulated, channel, |shown| shown.e);
+fn amplitude(scenarios: &Scenarios, simulated: Scenario, channel: usize, rad_s: f64) -> f64 {
+    let errors = scenarios.series(simulated, channel, |shown| shown.e);
     errors.wave(rad_s, SETTLED_S).amplitude
 }
 
-fn amplitudes(flights: &Scenarios, simulated: Scenario, rad_s: f64) -> Grouped {
-    worst_of_groups(flights, |channel| {
-        amplitude(flights, simulated, channel, rad_s)
+fn amplitudes(scenarios: &Scenarios, simulated: Scenario, rad_s: f64) -> Grouped {
+    worst_of_groups(scenarios, |channel| {
+        amplitude(scenarios, simulated, channel, rad_s)
     })
 }
 
 /// The errors at the frequency of the disturbance, without and with the FTC.
-pub(super) fn revealed(flights: &Scenarios) -> Found {
-    let rad_s = flights.met.force_rad_s;
+pub(super) fn revealed(scenarios: &Scenarios) -> Found {
+    let rad_s = scenarios.met.force_rad_s;
     let [pid, ftc] =
-        [Scenario::Pid, Scenario::Ftc].map(|simulated| amplitudes(flights, simulated, rad_s));
+        [Scenario::Pid, Scenario::Ftc].map(|simulated| amplitudes(scenarios, simulated, rad_s));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(
@@ -44,9 +44,9 @@ pub(super) fn revealed(flights: &Scenarios) -> Found {
 }
 
 /// The errors at the frequency of the sensor fault beside those at the frequency of the disturbance.
-pub(super) fn insignificant(flights: &Scenarios) -> Found {
-    let (fault_rad_s, force_rad_s) = (flights.met.fault_rad_s(), flights.met.force_rad_s);
-    let of = |rad_s: f64| amplitudes(flights, Scenario::Pid, rad_s);
+pub(super) fn insignificant(scenarios: &Scenarios) -> Found {
+    let (fault_rad_s, force_rad_s) = (scenarios.met.fault_rad_s(), scenarios.met.force_rad_s);
+    let of = |rad_s: f64| amplitudes(scenarios, Scenario::Pid, rad_s);
     let (fault, force) = (of(fault_rad_s), of(force_rad_s));
     let shares = quotients(&fault, &force);
     Found {
@@ -64,10 +64,10 @@ pub(super) fn insignificant(flights: &Scenarios) -> Found {
 }
 
 /// The sizes of both faults, which have no unit in common.
-pub(super) fn smaller(flights: &Scenarios) -> Found {
+pub(super) fn smaller(scenarios: &Scenarios) -> Found {
     let largest = |pick: fn(&crate::model::ChannelSample) -> f64| {
-        worst_of_groups(flights, |channel| {
-            let series = flights.series(Scenario::Ftc, channel, pick);
+        worst_of_groups(scenarios, |channel| {
+            let series = scenarios.series(Scenario::Ftc, channel, pick);
             top(series.after(SETTLED_S).map(f64::abs))
         })
     };
@@ -85,16 +85,16 @@ pub(super) fn smaller(flights: &Scenarios) -> Found {
 
 /// The errors of some channels at the frequency of the sensor fault, beside its even harmonics: a symmetric square wave
 /// has only odd ones.
-pub(super) fn visible(flights: &Scenarios, channels: &[usize]) -> Found {
-    let base_rad_s = flights.met.fault_rad_s();
+pub(super) fn visible(scenarios: &Scenarios, channels: &[usize]) -> Found {
+    let base_rad_s = scenarios.met.fault_rad_s();
     let of = |harmonic: f64| {
         let own = channels.iter();
-        top(own.map(|channel| amplitude(flights, Scenario::Pid, *channel, harmonic * base_rad_s)))
+        top(own.map(|channel| amplitude(scenarios, Scenario::Pid, *channel, harmonic * base_rad_s)))
     };
     let [first, second, fourth] = [1.0, 2.0, 4.0].map(of);
     let unit = channels
         .first()
-        .map_or("", |channel| flights.campaign.unit(*channel));
+        .map_or("", |channel| scenarios.campaign.unit(*channel));
     Found {
         measured: format!(
             "amplitude of the error at {} rad/s {} {unit}; at {} and {} rad/s, which a symmetric square wave lacks, {} and {} {unit} \
@@ -111,23 +111,23 @@ pub(super) fn visible(flights: &Scenarios, channels: &[usize]) -> Found {
     }
 }
 
-/// Whether the PID's flight ends within bounds.
-pub(super) fn stable(flights: &Scenarios) -> Found {
+/// Whether the episode under the PID ends within bounds.
+pub(super) fn stable(scenarios: &Scenarios) -> Found {
     let largest = |from_s: f64, until_s: f64| {
-        worst_of_groups(flights, |channel| {
-            let errors = flights.series(Scenario::Pid, channel, |shown| shown.e);
+        worst_of_groups(scenarios, |channel| {
+            let errors = scenarios.series(Scenario::Pid, channel, |shown| shown.e);
             errors.largest(from_s..until_s)
         })
     };
-    if let Some(lost_s) = flights.lost_s(Scenario::Pid) {
+    if let Some(lost_s) = scenarios.lost_s(Scenario::Pid) {
         return Found {
             measured: format!("{} diverges within {lost_s:.2} s", Scenario::Pid.name()),
             holds: Some(false),
             read: Vec::new(),
         };
     }
-    let period_s = flights.met.period_s;
-    let end_s = flights.end_s();
+    let period_s = scenarios.met.period_s;
+    let end_s = scenarios.end_s();
     // The periods before the last one and the last: the jumps of the sensor fault are in both.
     let (before, last) = (
         largest(SETTLED_S, end_s - period_s),
@@ -147,11 +147,11 @@ pub(super) fn stable(flights: &Scenarios) -> Found {
 }
 
 /// The RMS errors of both controllers.
-pub(super) fn worse(flights: &Scenarios) -> Found {
+pub(super) fn worse(scenarios: &Scenarios) -> Found {
     let of = |simulated: Scenario| {
-        grouped(flights, |channels| {
+        grouped(scenarios, |channels| {
             rms(channels.iter().flat_map(|channel| {
-                let errors = flights.series(simulated, *channel, |shown| shown.e);
+                let errors = scenarios.series(simulated, *channel, |shown| shown.e);
                 errors.after(SETTLED_S).collect::<Vec<_>>()
             }))
         })

@@ -26,26 +26,27 @@ pub(super) struct Found {
     pub(super) holds: Option<bool>,
 }
 
-/// Judges a claim by the flights that it reads; nothing is decided by a flight that diverges, or by numbers that are
+/// Judges a claim by the episodes that it reads; nothing is decided by an episode that diverges, or by numbers that are
 /// none.
 pub(super) fn decide(
     place: &'static str,
     claim: &'static str,
-    flights: &Scenarios,
+    scenarios: &Scenarios,
     reads: &[Scenario],
     judge: impl Fn(&Scenarios) -> Found,
 ) -> Claim {
     let lost = reads
         .iter()
-        .find_map(|simulated| Some((simulated.name(), flights.lost_s(*simulated)?)));
+        .find_map(|simulated| Some((simulated.name(), scenarios.lost_s(*simulated)?)));
     let (measured, holds) = match lost {
-        Some((flight, lost_s)) => {
-            let text =
-                format!("{flight} diverges within {lost_s:.2} s: there is nothing to measure");
+        Some((controller_name, lost_s)) => {
+            let text = format!(
+                "{controller_name} diverges within {lost_s:.2} s: there is nothing to measure"
+            );
             (text, None)
         }
         None => {
-            let found = judge(flights);
+            let found = judge(scenarios);
             let decided = found.read.iter().all(|value| value.is_finite());
             (found.measured, found.holds.filter(|_| decided))
         }

@@ -4,20 +4,20 @@ use crate::report::paper::measures::top;
 use crate::report::paper::scenarios::Scenarios;
 use crate::util::format::number;
 
-pub(super) fn channels(flights: &Scenarios) -> std::ops::Range<usize> {
-    0..flights.campaign.channels().len()
+pub(super) fn channels(scenarios: &Scenarios) -> std::ops::Range<usize> {
+    0..scenarios.campaign.channels().len()
 }
 
 /// The largest value over channels, of quantities without a unit.
-pub(super) fn worst(flights: &Scenarios, of: impl Fn(usize) -> f64) -> f64 {
-    top(channels(flights).map(of))
+pub(super) fn worst(scenarios: &Scenarios, of: impl Fn(usize) -> f64) -> f64 {
+    top(channels(scenarios).map(of))
 }
 
 /// A number of each group of channels, and the unit of its errors: metres and radians are never mixed.
 pub(super) type Grouped = Vec<(f64, &'static str)>;
 
-pub(super) fn grouped(flights: &Scenarios, of: impl Fn(&[usize]) -> f64) -> Grouped {
-    let groups = flights.campaign.channel_groups().into_iter();
+pub(super) fn grouped(scenarios: &Scenarios, of: impl Fn(&[usize]) -> f64) -> Grouped {
+    let groups = scenarios.campaign.channel_groups().into_iter();
     groups
         .map(|group| {
             let channels: Vec<usize> = group.channels.collect();
@@ -27,8 +27,8 @@ pub(super) fn grouped(flights: &Scenarios, of: impl Fn(&[usize]) -> f64) -> Grou
 }
 
 /// The largest value over each group's channels.
-pub(super) fn worst_of_groups(flights: &Scenarios, of: impl Fn(usize) -> f64) -> Grouped {
-    grouped(flights, |channels| {
+pub(super) fn worst_of_groups(scenarios: &Scenarios, of: impl Fn(usize) -> f64) -> Grouped {
+    grouped(scenarios, |channels| {
         top(channels.iter().map(|channel| of(*channel)))
     })
 }

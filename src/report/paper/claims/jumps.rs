@@ -13,23 +13,23 @@ pub(super) const STRETCH: [f64; 2] = [0.4, 0.9];
 pub(super) const BACK: f64 = 1.5;
 
 /// A part of the time after a jump, s.
-pub(super) fn part(flights: &Scenarios, jump_s: f64, shares: [f64; 2]) -> std::ops::Range<f64> {
-    let [from_s, until_s] = shares.map(|share| jump_s + share * flights.met.half_period_s());
+pub(super) fn part(scenarios: &Scenarios, jump_s: f64, shares: [f64; 2]) -> std::ops::Range<f64> {
+    let [from_s, until_s] = shares.map(|share| jump_s + share * scenarios.met.half_period_s());
     from_s..until_s
 }
 
 /// A curve's calm level: its largest size in the calm parts.
-pub(super) fn calm(flights: &Scenarios, series: &Series) -> f64 {
-    let jumps = flights.jumps_s(SETTLED_S).into_iter();
-    top(jumps.map(|jump_s| series.largest(part(flights, jump_s, CALM))))
+pub(super) fn calm(scenarios: &Scenarios, series: &Series) -> f64 {
+    let jumps = scenarios.jumps_s(SETTLED_S).into_iter();
+    top(jumps.map(|jump_s| series.largest(part(scenarios, jump_s, CALM))))
 }
 
 /// How soon after the jumps a curve is back at its calm level, s; the longest.
-pub(super) fn back_s(flights: &Scenarios, series: &Series) -> f64 {
-    let bound = BACK * calm(flights, series);
-    let jumps = flights.jumps_s(SETTLED_S).into_iter();
+pub(super) fn back_s(scenarios: &Scenarios, series: &Series) -> f64 {
+    let bound = BACK * calm(scenarios, series);
+    let jumps = scenarios.jumps_s(SETTLED_S).into_iter();
     top(jumps.map(|jump_s| {
-        let until_calm = part(flights, jump_s, [0.0, CALM[0]]);
+        let until_calm = part(scenarios, jump_s, [0.0, CALM[0]]);
         series.last_above(bound, until_calm) - jump_s
     }))
 }

@@ -1,4 +1,4 @@
-//! The claims of Section V, sentence by sentence, each with what the flights say about it.
+//! The claims of Section V, sentence by sentence, each with what the episodes say about it.
 
 use super::found::{Claim, SETTLED_S, decide};
 use super::{baseline, errors, signals};
@@ -33,14 +33,14 @@ fn about_errors(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
             "UAV: tracking errors are in the steady state within 2 s",
             uavs,
             &[Ftc, OnCourse],
-            |flights| errors::tracking(flights, SETTLED_S),
+            |scenarios| errors::tracking(scenarios, SETTLED_S),
         ),
         decide(
             "Fig. 11",
             "UAV: estimation errors are in the steady state within 2 s",
             uavs,
             &[Ftc, OnCourse],
-            |flights| errors::estimation(flights, SETTLED_S),
+            |scenarios| errors::estimation(scenarios, SETTLED_S),
         ),
         decide(
             "Fig. 11",
@@ -54,28 +54,28 @@ fn about_errors(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
             "robot: tracking errors are in the steady state at once",
             robots,
             &[Ftc, OnCourse],
-            |flights| errors::tracking(flights, AT_ONCE_S),
+            |scenarios| errors::tracking(scenarios, AT_ONCE_S),
         ),
         decide(
             "Fig. 15",
             "robot: estimation errors are in the steady state at once",
             robots,
             &[Ftc, OnCourse],
-            |flights| errors::estimation(flights, AT_ONCE_S),
+            |scenarios| errors::estimation(scenarios, AT_ONCE_S),
         ),
         decide(
             "Fig. 15",
             "robot: tracking errors stay in the steady state whatever the faults do",
             robots,
             &[Ftc],
-            |flights| errors::kept(flights, |shown| shown.e),
+            |scenarios| errors::kept(scenarios, |shown| shown.e),
         ),
         decide(
             "Fig. 15",
             "robot: estimation errors stay in the steady state whatever the faults do",
             robots,
             &[Ftc],
-            |flights| errors::kept(flights, |shown| shown.e - shown.e_hat),
+            |scenarios| errors::kept(scenarios, |shown| shown.e - shown.e_hat),
         ),
     ]
 }
@@ -199,14 +199,14 @@ fn about_faults_shown(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
             "UAV: under the PID the sensor fault's period shows in the attitude x4, x5, x6",
             uavs,
             &[Pid],
-            |flights| baseline::visible(flights, &ATTITUDE),
+            |scenarios| baseline::visible(scenarios, &ATTITUDE),
         ),
         decide(
             "Fig. 20",
             "robot: under the PID the sensor fault's period shows in the joints x5, x6, x11, x12",
             robots,
             &[Pid],
-            |flights| baseline::visible(flights, &JOINTS),
+            |scenarios| baseline::visible(scenarios, &JOINTS),
         ),
     ]
 }
@@ -214,7 +214,7 @@ fn about_faults_shown(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
 /// Figures 19 and 20: how the PID fares beside the FTC.
 fn about_the_pid(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
     vec![
-        // Whether a flight ends is what this asks, so one that does not is an answer.
+        // Whether an episode ends is what this asks, so one that does not is an answer.
         decide(
             "Fig. 19",
             "UAV: the PID stays stable",

@@ -1,4 +1,4 @@
-//! The claims of Section V, sentence by sentence, and what the flights say about them.
+//! The claims of Section V, sentence by sentence, and what the episodes say about them.
 
 mod baseline;
 mod errors;

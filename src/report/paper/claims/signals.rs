@@ -21,20 +21,20 @@ const SINE: f64 = 0.9;
 const CONSTANT: f64 = 0.1;
 
 /// The unit of the control in a channel of m or rad of an agent.
-fn effort(flights: &Scenarios) -> impl Fn(&str) -> String {
-    let robot = matches!(flights.campaign.agent, Agent::Biped(_));
+fn effort(scenarios: &Scenarios) -> impl Fn(&str) -> String {
+    let robot = matches!(scenarios.campaign.agent, Agent::Biped(_));
     move |unit| if unit == "m" && !robot { "N" } else { "N m" }.into()
 }
 
-fn control(flights: &Scenarios, channel: usize) -> Series {
-    flights.series(Scenario::Ftc, channel, |shown| shown.u)
+fn control(scenarios: &Scenarios, channel: usize) -> Series {
+    scenarios.series(Scenario::Ftc, channel, |shown| shown.u)
 }
 
 /// How wrong the estimate of f1 is.
-pub(super) fn estimated(flights: &Scenarios) -> Found {
-    let share = worst(flights, |channel| {
-        let truth = flights.series(Scenario::Ftc, channel, |shown| shown.f1);
-        let wrong = flights.series(Scenario::Ftc, channel, |shown| shown.f1_hat - shown.f1);
+pub(super) fn estimated(scenarios: &Scenarios) -> Found {
+    let share = worst(scenarios, |channel| {
+        let truth = scenarios.series(Scenario::Ftc, channel, |shown| shown.f1);
+        let wrong = scenarios.series(Scenario::Ftc, channel, |shown| shown.f1_hat - shown.f1);
         rms(wrong.after(SETTLED_S)) / rms(truth.after(SETTLED_S))
     });
     Found {
@@ -49,18 +49,19 @@ pub(super) fn estimated(flights: &Scenarios) -> Found {
 }
 
 /// How far the estimate of f2 overshoots where f2 jumps, and how soon its error is at its own calm level again.
-pub(super) fn overshoot(flights: &Scenarios) -> Found {
-    let size = flights.met.fault.abs();
-    let over = worst(flights, |channel| {
-        let estimate = flights.series(Scenario::Ftc, channel, |shown| shown.f2_hat);
-        let jumps = flights.jumps_s(SETTLED_S).into_iter();
-        top(jumps
-            .map(|jump_s| estimate.largest(part(flights, jump_s, [PEAK[0], CALM[0]])) / size - 1.0))
+pub(super) fn overshoot(scenarios: &Scenarios) -> Found {
+    let size = scenarios.met.fault.abs();
+    let over = worst(scenarios, |channel| {
+        let estimate = scenarios.series(Scenario::Ftc, channel, |shown| shown.f2_hat);
+        let jumps = scenarios.jumps_s(SETTLED_S).into_iter();
+        top(jumps.map(|jump_s| {
+            estimate.largest(part(scenarios, jump_s, [PEAK[0], CALM[0]])) / size - 1.0
+        }))
     });
     let wrong =
-        |channel: usize| flights.series(Scenario::Ftc, channel, |shown| shown.f2_hat - shown.f2);
-    let calm = worst(flights, |channel| calm(flights, &wrong(channel))) / size;
-    let back_s = worst(flights, |channel| back_s(flights, &wrong(channel)));
+        |channel: usize| scenarios.series(Scenario::Ftc, channel, |shown| shown.f2_hat - shown.f2);
+    let calm = worst(scenarios, |channel| calm(scenarios, &wrong(channel))) / size;
+    let back_s = worst(scenarios, |channel| back_s(scenarios, &wrong(channel)));
     Found {
         measured: format!(
             "overshoots by up to {}; its error is within {BACK} times its calm level (up to {} of the fault) again after {back_s:.2} s \
@@ -74,18 +75,18 @@ pub(super) fn overshoot(flights: &Scenarios) -> Found {
 }
 
 /// How the control starts, beside how it goes on.
-pub(super) fn start(flights: &Scenarios) -> Found {
+pub(super) fn start(scenarios: &Scenarios) -> Found {
     let largest = |from_s: f64, until_s: f64| {
-        worst_of_groups(flights, |channel| {
-            control(flights, channel).largest(from_s..until_s)
+        worst_of_groups(scenarios, |channel| {
+            control(scenarios, channel).largest(from_s..until_s)
         })
     };
     let (first, later) = (largest(0.0, START_S), largest(SETTLED_S, f64::INFINITY));
     let pace = |from_s: f64, until_s: f64| {
-        grouped(flights, |channels| {
+        grouped(scenarios, |channels| {
             let controls: Vec<Series> = channels
                 .iter()
-                .map(|channel| control(flights, *channel))
+                .map(|channel| control(scenarios, *channel))
                 .collect();
             let slopes: Vec<Series> = controls.iter().map(Series::slopes).collect();
             let size = |all: &[Series]| {
@@ -99,11 +100,11 @@ pub(super) fn start(flights: &Scenarios) -> Found {
     let (fast, slow) = (pace(0.0, START_S), pace(SETTLED_S, f64::INFINITY));
     let amplitudes = quotients(&first, &later);
     let frequencies = quotients(&fast, &slow);
-    let higher = channels(flights).filter(|channel| {
-        let series = control(flights, *channel);
+    let higher = channels(scenarios).filter(|channel| {
+        let series = control(scenarios, *channel);
         series.largest(0.0..START_S) > series.largest(SETTLED_S..f64::INFINITY)
     });
-    let unit = effort(flights);
+    let unit = effort(scenarios);
     let per_second = |_: &str| "1/s".to_string();
     Found {
         measured: format!(
@@ -112,7 +113,7 @@ pub(super) fn start(flights: &Scenarios) -> Found {
             with_units(&first, &unit),
             with_units(&later, &unit),
             higher.count(),
-            channels(flights).len(),
+            channels(scenarios).len(),
             with_units(&fast, per_second),
             with_units(&slow, per_second),
         ),
@@ -125,10 +126,10 @@ pub(super) fn start(flights: &Scenarios) -> Found {
 }
 
 /// How much of the control is a sine that cancels the disturbance.
-pub(super) fn sine(flights: &Scenarios) -> Found {
-    let force = flights.met.force.abs();
-    let waves = channels(flights)
-        .map(|channel| control(flights, channel).wave(flights.met.force_rad_s, SETTLED_S));
+pub(super) fn sine(scenarios: &Scenarios) -> Found {
+    let force = scenarios.met.force.abs();
+    let waves = channels(scenarios)
+        .map(|channel| control(scenarios, channel).wave(scenarios.met.force_rad_s, SETTLED_S));
     let waves: Vec<_> = waves.collect();
     let share = bottom(waves.iter().map(|wave| wave.share));
     let low = bottom(waves.iter().map(|wave| wave.amplitude / force));
@@ -137,7 +138,7 @@ pub(super) fn sine(flights: &Scenarios) -> Found {
         measured: format!(
             "from {SETTLED_S} s on a sine of {} rad/s is at least {} of the variance of u (must be {}), with {} to {} of the \
              disturbance's amplitude",
-            number(flights.met.force_rad_s),
+            number(scenarios.met.force_rad_s),
             percent(share),
             percent(SINE),
             percent(low),
@@ -149,12 +150,12 @@ pub(super) fn sine(flights: &Scenarios) -> Found {
 }
 
 /// The size of the force that a UAV's controls demand, beside its weight.
-pub(super) fn thrust(flights: &Scenarios) -> Found {
-    let weight = match &flights.campaign.agent {
-        Agent::Uav(uav) => uav.mass_kg * uav.gravity_m_s2 * flights.met.mass_scale,
+pub(super) fn thrust(scenarios: &Scenarios) -> Found {
+    let weight = match &scenarios.campaign.agent {
+        Agent::Uav(uav) => uav.mass_kg * uav.gravity_m_s2 * scenarios.met.mass_scale,
         Agent::Biped(_) => f64::NAN,
     };
-    let axes = [0, 1, 2].map(|axis| control(flights, axis));
+    let axes = [0, 1, 2].map(|axis| control(scenarios, axis));
     let [x, y, z] = axes.each_ref().map(|axis| axis.after(SETTLED_S));
     let force = x.zip(y).zip(z).map(|((x, y), z)| x.hypot(y).hypot(z));
     let force: Vec<f64> = force.collect();
@@ -167,7 +168,7 @@ pub(super) fn thrust(flights: &Scenarios) -> Found {
             number(high),
             number(weight),
             percent(CONSTANT),
-            number(flights.met.force)
+            number(scenarios.met.force)
         ),
         holds: Some(low >= (1.0 - CONSTANT) * weight && high <= (1.0 + CONSTANT) * weight),
         read: vec![low, high, weight],

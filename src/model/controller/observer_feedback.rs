@@ -1,26 +1,22 @@
-//! The controller of one channel: observer (20) and feedback (21), in the form that is integrated.
+//! Feedback of what an observer estimates: observer (20) and feedback (21) of one channel, in the form that is
+//! integrated.
 //!
-//! A channel's state is [int e, e, e', observer]: errors are small numbers, so single precision keeps their digits. The
-//! observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact reduction of the 12 of (19): the taps beyond
-//! the second are a delay line that never feeds back. The observer of a PID has the 3 states ehat. A controller that
-//! measures without error has none.
+//! The observer of the FTC has 7 states, [ehat (3), F1 (2), F2 (2)], an exact reduction of the 12 of (19): the taps
+//! beyond the second are a delay line that never feeds back. The observer of a PID has the 3 states ehat.
 
-use super::integrator::{Step, Stepped};
-use super::lanes::{Lane, Real};
+use super::{Law, Measured, OBSERVER, step_error};
+use crate::model::integrator::{Step, Stepped};
+use crate::model::lanes::{Lane, Real};
 use crate::synthesis::LoopGains;
 
 /// States of a channel under the FTC.
-pub const FTC_STATES: usize = 10;
+pub(crate) const FTC_STATES: usize = 10;
 /// States of a channel under a PID.
-pub const PID_STATES: usize = 6;
-/// States of a channel under a controller that measures without error.
-pub const TRUE_STATES: usize = 3;
-/// States of a channel before those of its observer.
-pub const OBSERVER: usize = 3;
+pub(crate) const PID_STATES: usize = 6;
 
 /// Gains of one channel in the precision of the loop.
 #[derive(Debug, Clone, Copy)]
-pub struct ChannelGains<R> {
+pub(crate) struct ChannelGains<R> {
     /// K of (21).
     pub(crate) feedback: [R; 7],
     /// -L of (20).
@@ -34,24 +30,12 @@ pub struct ChannelGains<R> {
 impl<R: Real> ChannelGains<R> {
     /// The gains rounded to this precision.
     #[must_use]
-    pub fn new(gains: &LoopGains) -> Self {
+    pub(crate) fn new(gains: &LoopGains) -> Self {
         Self {
             feedback: gains.k.map(R::from_f64),
             injection: gains.l.map(|row| row.map(|entry| R::from_f64(-entry))),
             smoothing: gains.smoothing.map(R::from_f64),
             sensor_fault_input: [1, 2].map(|row| R::from_f64(gains.sensor_fault_input[row])),
-        }
-    }
-
-    /// A controller that knows [int e, e, e'] and feeds it back through `feedback`.
-    pub(crate) fn true_state(feedback: [f64; 3]) -> Self {
-        let zero = R::from_f64(0.0);
-        let [k0, k1, k2] = feedback.map(R::from_f64);
-        Self {
-            feedback: [k0, k1, k2, zero, zero, zero, zero],
-            injection: [[zero; 3]; 7],
-            smoothing: [zero; 3],
-            sensor_fault_input: [zero; 2],
         }
     }
 
@@ -68,21 +52,46 @@ impl<R: Real> ChannelGains<R> {
     }
 }
 
-/// What becomes of the outputs before the observer sees them.
-pub(crate) struct Measured<L> {
-    /// f2, which enters through B20.
-    pub(crate) sensor_fault: L,
-    /// By how much x and x' are measured too large beside it.
-    pub(crate) off: [L; 2],
-    /// Whether the first output is the integral of what is measured, and not that of e.
-    pub(crate) integral: bool,
-}
+impl<L: Lane, const NS: usize> Law<L, NS> for ChannelGains<L::Real> {
+    fn start(&self, state: &mut [L; NS], off: [L; 2], sensor_fault: L) {
+        let [error, rate] = [state[1] + off[0], state[2] + off[1]];
+        let estimates = self.measured(state[0], error, rate, sensor_fault);
+        state[OBSERVER..OBSERVER + 3].copy_from_slice(&estimates);
+    }
 
-/// The estimates of int e, e and e'.
-#[inline(always)]
-pub(crate) fn error_estimate<L: Lane, const NS: usize>(state: &[L; NS]) -> [L; 3] {
-    let first = if NS == TRUE_STATES { 0 } else { OBSERVER };
-    [state[first], state[first + 1], state[first + 2]]
+    #[inline(always)]
+    fn feedback(&self, state: &[L; NS]) -> L {
+        feedback(self, state)
+    }
+
+    #[inline(always)]
+    fn step<const STAGE: usize>(
+        &self,
+        channel: &mut Stepped<L, NS>,
+        error_acceleration: L,
+        measured: &Measured<L>,
+        applied_feedback: L,
+        h: &Step<L::Real>,
+    ) {
+        step_channel::<L, NS, STAGE>(
+            self,
+            channel,
+            error_acceleration,
+            measured,
+            applied_feedback,
+            h,
+        );
+    }
+
+    #[inline(always)]
+    fn error_estimate(state: &[L; NS]) -> [L; 3] {
+        [state[OBSERVER], state[OBSERVER + 1], state[OBSERVER + 2]]
+    }
+
+    #[inline(always)]
+    fn fault_estimates(state: &[L; NS]) -> [L; 2] {
+        fault_estimates(state)
+    }
 }
 
 /// u_fb = K ehat, (21).
@@ -92,10 +101,9 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
     state: &[L; NS],
 ) -> L {
     let k = &gains.feedback;
-    let [integral, error, rate] = error_estimate(state);
-    let mut sum = integral * L::splat(k[0]);
-    sum = error.mul_add(L::splat(k[1]), sum);
-    sum = rate.mul_add(L::splat(k[2]), sum);
+    let mut sum = state[OBSERVER] * L::splat(k[0]);
+    sum = state[OBSERVER + 1].mul_add(L::splat(k[1]), sum);
+    sum = state[OBSERVER + 2].mul_add(L::splat(k[2]), sum);
     if NS == FTC_STATES {
         sum = state[OBSERVER + 3].mul_add(L::splat(k[3]), sum);
         sum = state[OBSERVER + 4].mul_add(L::splat(k[4]), sum);
@@ -106,7 +114,7 @@ pub(crate) fn feedback<L: Lane, const NS: usize>(
 /// Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)], each row taken as soon as it is
 /// known, so that few values live at once.
 ///
-/// `told` is the feedback that the observer is told was commanded.
+/// `applied_feedback` is the feedback of which the observer learns that it was commanded.
 #[inline(always)]
 pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     gains: &ChannelGains<L::Real>,
@@ -116,11 +124,6 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
     applied_feedback: L,
     h: &Step<L::Real>,
 ) {
-    if NS == TRUE_STATES {
-        let state = *channel.at::<STAGE>();
-        channel.take::<STAGE>(0, state[1], h);
-        return step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
-    }
     let [b1, b2] = [
         L::splat(gains.sensor_fault_input[0]),
         L::splat(gains.sensor_fault_input[1]),
@@ -172,18 +175,6 @@ pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
         row = injected(&rows[2], &innovation, applied_feedback);
         channel.take::<STAGE>(OBSERVER + 2, row, h);
     }
-}
-
-/// The rows e and e'.
-#[inline(always)]
-fn step_error<L: Lane, const NS: usize, const STAGE: usize>(
-    channel: &mut Stepped<L, NS>,
-    state: &[L; NS],
-    error_acceleration: L,
-    h: &Step<L::Real>,
-) {
-    channel.take::<STAGE>(1, state[2], h);
-    channel.take::<STAGE>(2, error_acceleration, h);
 }
 
 /// base - L (y - yhat), one row.

@@ -1,5 +1,5 @@
-// Twin of src/model/controller.rs: observer (20) and feedback (21) of one channel, whose state is [int e, e, e',
-// observer].
+// Twin of src/model/controller/observer_feedback.rs: observer (20) and feedback (21) of one channel, whose state is
+// [int e, e, e', observer].
 
 struct ChannelGains {
     // K of (21): four and three.
@@ -72,7 +72,7 @@ fn feedback(stage: u32) -> f32 {
 
 // Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)].
 //
-// `told` is the feedback that the observer is told was commanded.
+// `applied_feedback` is the feedback of which the observer learns that it was commanded.
 // `off` is by how much x and x' are measured too large, beside f2.
 fn step_channel(stage: u32, error_acceleration: f32, sensor_fault: f32, off: vec2<f32>, applied_feedback: f32) {
     let b = sensor_fault_input();
