@@ -136,7 +136,7 @@ pub(crate) fn gains(campaign: &Campaign) -> &'static GainSet {
     own.get_or_init(|| GainSet::synthesize_or_load(campaign).unwrap())
 }
 
-/// Flies a campaign with its own gains on the widest lanes.
+/// Simulates a campaign with its own gains on the widest lanes.
 pub(crate) fn simulate(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
     let gains = gains(campaign);
     Cpu::new(campaign, &gains.loops(), precision, None).simulate(0..campaign.episodes, &|_| ())

@@ -2,36 +2,22 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `scenarios` | the closed loop against independent trajectories |
-//! | `synthesis` | gains, certificates and margins against an independent implementation |
-//! | `lapack` | the linear algebra under the solver against nalgebra |
+//! | `random` | designs: balance, independence, what they gain and allow |
 //! | `statistics` | estimators against published values, and their coverage |
-//! | `sampling` | designs: balance, independence, what they gain and allow |
-//! | `ranking` | what the conditions of an episode do to its outcome |
-//! | `comparison` | what is said of each stratum, against numbers worked out by hand |
-//! | `designs` | sampling designs in campaigns: balance, replicates, what they leave out |
-//! | `stop` | early stop: its level, and the same end whatever flies |
-//! | `strata` | names of faults, and which episodes meet which |
-//! | `path` | the waypoint reference |
-//! | `robot` | robot files, kinematics and dynamics of a biped against an independent implementation |
-//! | `leg` | the fast dynamics of a leg on every lane type |
-//! | `walk` | the walking reference against an independent implementation |
-//! | `biped` | robots in the episode loop: against independent trajectories and formulas, at their limits, on every lane type |
-//! | `faults` | every kind of fault and disturbance, and every option of the loop, against its definition |
-//! | `attenuation` | inequality (24) of the paper on flights, against plain formulas |
-//! | `determinism` | the same bytes for any thread count, width and length; replay |
-//! | `digests` | the bytes of every shipped campaign's tables, against an earlier version's |
-//! | `gpu` | the shaders against the CPU, episode by episode; changed shaders that must be noticed |
-//! | `house` | the layout of the sources: order of the rooms, circles, sizes |
-//! | `flight` | flights whose GPU fails |
-//! | `lanes` | elementary functions, phases and selections on every lane type |
-//! | `model` | order of the integration, limits, noise, draws |
-//! | `campaigns` | every shipped campaign; what the paper claims |
-//! | `overlay` | settings laid over a campaign file |
-//! | `paper` | the paper's figures and claims |
-//! | `readme` | what the README tells its readers to type |
-//! | `report` | what the report of a run says, and what a browser makes of it |
+//! | `agent` | robot files, kinematics and dynamics of a biped against an independent implementation |
+//! | `reference` | the waypoint reference; the walk against an independent implementation |
+//! | `synthesis` | gains, certificates and margins against an independent implementation; the linear algebra under the solver |
+//! | `campaign` | every shipped campaign; settings laid over a file |
+//! | `draw` | sampling designs in campaigns; names of faults, and which episodes meet which |
+//! | `model` | the closed loop against independent trajectories; every fault, disturbance and option against its definition; robots, lanes, metrics |
+//! | `backend` | the same bytes for any thread count, width and length; the shaders against the CPU, and changed shaders that must be noticed |
+//! | `results` | what is said of each stratum, against numbers worked out by hand; what the conditions of an episode do to its outcome |
+//! | `simulation` | early stop: its level, and the same end whatever simulates; runs whose GPU fails; inequality (24) of the paper |
+//! | `run` | the bytes of every shipped campaign's tables, against an earlier version's |
+//! | `report` | what the report of a run says, and what a browser makes of it; the paper's figures and claims |
 //! | `cli` | commands, exit codes and error messages |
+//! | `house` | the layout of the sources: order of the rooms, circles, sizes |
+//! | `readme` | what the README tells its readers to type |
 //!
 //! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with
 //! ourselves.
@@ -47,36 +33,21 @@
     reason = "small counts"
 )]
 
-mod cli;
 mod common;
 
-mod attenuation;
-mod biped;
-mod campaigns;
-mod comparison;
-mod designs;
-mod determinism;
-mod digests;
-mod faults;
-mod flight;
-mod gpu;
+mod agent;
+mod backend;
+mod campaign;
+mod cli;
+mod draw;
 mod house;
-mod lanes;
-mod lapack;
-mod leg;
-mod metrics;
 mod model;
-mod overlay;
-mod paper;
-mod path;
-mod ranking;
+mod random;
 mod readme;
+mod reference;
 mod report;
-mod robot;
-mod sampling;
-mod scenarios;
+mod results;
+mod run;
+mod simulation;
 mod statistics;
-mod stop;
-mod strata;
 mod synthesis;
-mod walk;

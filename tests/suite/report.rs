@@ -1,6 +1,7 @@
 //! The report of a run: what it says, and what a browser makes of it.
 
 mod browser;
+mod paper;
 
 use crate::common::{repository, settings};
 use std::fs;
@@ -15,7 +16,7 @@ struct Run {
 }
 
 impl Run {
-    /// Flies a shipped campaign with changes laid over it.
+    /// Simulates a shipped campaign with changes laid over it.
     fn of(name: &str, episodes: u32, changes: &[&str]) -> Self {
         let place = TempDir::new().unwrap();
         let campaign = place.path().join("c.toml");
@@ -62,7 +63,7 @@ fn program(arguments: &[&str]) -> (i32, String) {
     (output.status.code().unwrap_or(-1), said)
 }
 
-/// A run without limits that any flight keeps to: every episode of every controller fails.
+/// A run without limits that any episode keeps to: every episode of every controller fails.
 fn all_failed() -> Run {
     Run::of("smoke", 4, &["verdict.max_error=1e-6"])
 }

@@ -16,6 +16,7 @@ use urts_mc::synthesis::{
 
 mod certificate;
 mod designs;
+mod lapack;
 mod loop_form;
 mod reference;
 mod refusals;

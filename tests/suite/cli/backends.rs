@@ -1,4 +1,4 @@
-//! Choosing where to fly: --backend, --adapter, --cross-check, and the command that explains the choice.
+//! Choosing where to simulate: --backend, --adapter, --cross-check, and the command that explains the choice.
 
 use super::Place;
 use crate::common::gpu_or_skip;

@@ -41,7 +41,7 @@ fn synthesized_gains_fed_back_as_a_file_give_the_same_comparison() {
 }
 
 #[test]
-fn a_named_controller_flies_beside_the_built_in_ones() {
+fn a_named_controller_is_simulated_beside_the_built_in_ones() {
     let (place, _) = with_gains();
     place.write(
         "e.toml",

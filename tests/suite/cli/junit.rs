@@ -187,14 +187,14 @@ fn a_run_that_comes_to_nothing_is_an_error_and_leaves_no_earlier_success() {
         message.contains("out/summary.csv: cannot be written"),
         "{message}"
     );
-    // Nor where the flight is killed: nothing is left that looks like a success.
+    // Nor where the simulation is killed: nothing is left that looks like a success.
     fs::remove_dir(place.path("out/summary.csv")).unwrap();
     place.succeeds(&RUN);
     let mut flying = place
         .command(&[&RUN as &[_], &["--episodes", "1000000", "--quiet"]].concat())
         .spawn()
         .unwrap();
-    // Synthesis takes a fraction of a second, a million episodes minutes: it is flying.
+    // Synthesis takes a fraction of a second, a million episodes minutes: it is simulating.
     std::thread::sleep(std::time::Duration::from_secs(1));
     assert!(
         flying.try_wait().unwrap().is_none(),
@@ -206,7 +206,7 @@ fn a_run_that_comes_to_nothing_is_an_error_and_leaves_no_earlier_success() {
 }
 
 #[test]
-fn a_file_that_cannot_be_written_or_is_something_else_is_refused_before_flying() {
+fn a_file_that_cannot_be_written_or_is_something_else_is_refused_before_simulating() {
     let place = with(&[("ftc", "0.64")]);
     fs::create_dir(place.path("folder")).unwrap();
     place.write("notes.txt", "mine");
@@ -334,7 +334,7 @@ fn a_file_that_the_run_writes_itself_is_refused() {
 }
 
 #[test]
-fn an_interrupted_flight_and_a_missing_cross_check_are_errors_and_a_failed_one_a_failure() {
+fn an_interrupted_simulation_and_a_missing_cross_check_are_errors_and_a_failed_one_a_failure() {
     let place = with(&[("ftc", "0.64")]);
     place.succeeds(&[&RUN as &[_], &["--cross-check", "1"]].concat());
     let manifest = Manifest::read(&place.path("out")).unwrap();

@@ -1,4 +1,4 @@
-//! What is said about a campaign before it is flown.
+//! What is said about a campaign before it is simulated.
 
 use super::{Place, smoke};
 use crate::common::{altered, campaign};
@@ -28,7 +28,7 @@ fn a_requirement_that_so_few_episodes_cannot_prove_is_told_with_the_number_that_
     let said = place.succeeds(&["check", "c.toml"]);
     assert!(said.ends_with(&format!("\nnote: {note}\n")), "{said}");
     assert_eq!(place.json(&["check", "c.toml", "--json"])["notes"][0], note);
-    // The run says it first, and is flown all the same.
+    // The run says it first, and is simulated all the same.
     let run = ["run", "c.toml", "--out", "out", "--episodes", "3"];
     let ended = place.program(&run);
     let note = format!("note: {}\n", note.replace("40", "3"));

@@ -136,7 +136,7 @@ fn another_campaigns_run_is_replaced_only_on_request() {
             "--overwrite",
         ],
     );
-    // Nor may another seed or a shorter run replace what was flown; the same run may, and a longer one.
+    // Nor may another seed or a shorter run replace what was simulated; the same run may, and a longer one.
     for fewer in [["--seed", "7"], ["--episodes", "2"]] {
         let arguments = [&RUN[..], &fewer[..]].concat();
         place.refuses(
@@ -224,7 +224,7 @@ fn a_killed_run_leaves_the_earlier_one_as_it_was_or_nothing() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Synthesis takes a fraction of a second, a million episodes minutes: it is flying.
+        // Synthesis takes a fraction of a second, a million episodes minutes: it is simulating.
         sleep(Duration::from_secs(1));
         assert!(
             flying.try_wait().unwrap().is_none(),

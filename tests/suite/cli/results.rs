@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fs;
 
 #[test]
-fn check_shows_what_would_be_drawn_and_flies_and_writes_nothing() {
+fn check_shows_what_would_be_drawn_and_simulates_and_writes_nothing() {
     let place = Place::smoke(&[]);
     let before = place.everything();
     // So many episodes would take days.

@@ -1,4 +1,4 @@
-//! `--set`: the campaign that is flown, what its run remembers, and what is said of settings that cannot be.
+//! `--set`: the campaign that is simulated, what its run remembers, and what is said of settings that cannot be.
 
 use super::Place;
 use serde_json::Value;

@@ -150,7 +150,7 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
 }
 
 #[test]
-fn a_replay_as_json_says_what_was_flown_what_was_written_and_the_attenuation() {
+fn a_replay_as_json_says_what_was_simulated_what_was_written_and_the_attenuation() {
     let place = Place::smoke(&[("probability = 0.25", "probability = 1.0")]);
     place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
     let replay = ["replay", "out", "--episode", "1", "--json"];

@@ -1,11 +1,11 @@
-//! The figures of a replay: what is in them, and that the curves are the numbers flown.
+//! The figures of a replay: what is in them, and that the curves are the numbers simulated.
 
 use super::Place;
 use crate::common::repository;
 use std::fs;
 use urts_mc::run::replay::{Replay, replay};
 
-/// A short flight of three UAVs whose y is struck from 1 s to 1.5 s, and nothing else.
+/// A short episode of three UAVs whose y is struck from 1 s to 1.5 s, and nothing else.
 fn struck() -> Place {
     let place = Place::smoke(&[]);
     let mut run = vec!["run", "c.toml", "--out", "out", "--episodes", "2"];
@@ -150,7 +150,7 @@ fn a_replay_draws_every_channel_and_every_controller_and_shades_the_faults_it_me
 /// How far the baseline of a label is below its tick, px.
 const LABELS_BELOW: f64 = 4.01;
 
-/// What is drawn of a flight against what it showed.
+/// What is drawn of an episode against what it showed.
 fn agrees(panel: &str, colour: &str, simulated: &Replay, pick: impl Fn(usize) -> f64) {
     let drawn = lines(panel, colour);
     assert_eq!(drawn.len(), 1, "{colour}");
@@ -180,7 +180,7 @@ fn agrees(panel: &str, colour: &str, simulated: &Replay, pick: impl Fn(usize) ->
 }
 
 #[test]
-fn the_curves_are_the_numbers_flown() {
+fn the_curves_are_the_numbers_simulated() {
     let place = struck();
     place.succeeds(&["replay", "out", "--episode", "0"]);
     let simulated = replay(&place.path("out"), 0, "ftc", None).unwrap();
@@ -208,7 +208,7 @@ fn the_curves_are_the_numbers_flown() {
 }
 
 #[test]
-fn the_other_flights_of_a_replay_are_those_of_their_own_replays() {
+fn the_other_controllers_of_a_replay_are_those_of_their_own_replays() {
     let place = struck();
     let out = place.path("out");
     let simulated = replay(&out, 1, "pid", None).unwrap();

@@ -69,7 +69,7 @@ fn a_campaign_file_that_cannot_be_read_is_named() {
 }
 
 #[test]
-fn a_replay_of_what_was_not_flown_is_refused() {
+fn a_replay_of_what_was_not_simulated_is_refused() {
     let place = Place::smoke(&[]);
     place.succeeds(&["run", "c.toml", "--out", "out"]);
     let replay = |more: &str, words: &[&str]| {

@@ -1,0 +1,3 @@
+//! What flies or walks: robots' files and dynamics.
+
+mod robot;

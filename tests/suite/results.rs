@@ -1,0 +1,4 @@
+//! Every statistic of a run, against numbers worked out by hand.
+
+mod comparison;
+mod ranking;

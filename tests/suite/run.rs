@@ -1,0 +1,3 @@
+//! The directory of a run.
+
+mod digests;
