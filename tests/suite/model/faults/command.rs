@@ -99,7 +99,7 @@ fn val_a_dead_zone_lets_act_what_goes_beyond_it() {
     let nothing = simulated[ONSET..].iter().filter(|shown| shown.u == 0.0);
     let some = simulated[ONSET..].iter().filter(|shown| shown.u != 0.0);
     let (nothing, some) = (nothing.count(), some.count());
-    assert!(nothing > 20 && some > 20, "{nothing} {some}");
+    assert!(nothing > 5 && some > 20, "{nothing} {some}");
 }
 
 #[test]
