@@ -1,7 +1,7 @@
 //! Controllers: the law of one channel, from what is measured to the feedback.
 //!
 //! A channel's state is [int e, e, e', what its controller keeps]: errors are small numbers, so single precision keeps
-//! their digits. A family of controllers is a file here: its gains, and its [`Law`]. [`kinds`] lists the families; the
+//! their digits. A family of controllers is a file here: its gains, and its `Law`. [`kinds`] lists the families; the
 //! loop asks them for nothing but their law.
 
 pub mod kinds;

@@ -8,6 +8,11 @@
 //!
 //! So only the limits of rate remember what acted; all else that is held lies before the actuator.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a channel is one index of several arrays, as in the shaders"
+)]
+
 use super::delay_line::Moment;
 use super::inputs::ExogenousInputs;
 use super::lists::turned;
