@@ -6,8 +6,6 @@ var<private> command_gain: f32;
 var<private> command_bias: f32;
 // By how much the acting command may change in a step.
 var<private> slew: f32;
-// Up to which size the command gives nothing.
-var<private> dead_zone: f32;
 // Whether the link brings no new command (1 or 0).
 var<private> blocked: f32;
 // At the start of the last step: the command that the controller sent, the one that arrived at the actuator, and the
@@ -23,6 +21,7 @@ struct Actuator {
     bias: f32,
     low: f32,
     high: f32,
+    // Up to which size the command gives nothing in this step.
     dead_zone: f32,
 }
 
@@ -74,12 +73,14 @@ fn hold_command(step: u32, team: f32) {
         limit = lane_select_le(0.5, weight, lane_min(window_value(RATE_LIMITS + k), limit), limit);
     }
     slew = limit;
-    // Two zones, one after the other, are one as wide as both.
-    var zone = 0.0;
-    for (var k = 0u; k < N_DEAD_ZONES; k++) {
-        zone = zone + window_at(DEAD_ZONES + k, step);
+    if N_DEAD_ZONES > 0u {
+        // Two zones, one after the other, are one as wide as both.
+        var wide = 0.0;
+        for (var k = 0u; k < N_DEAD_ZONES; k++) {
+            wide = wide + window_at(DEAD_ZONES + k, step);
+        }
+        actuator.dead_zone = wide;
     }
-    dead_zone = zone;
     var blocks = 0.0;
     for (var k = 0u; k < N_COMMAND_HOLDS; k++) {
         blocks = lane_max(blocks, intermittent_window_at(COMMAND_HOLDS + k, step).x);
@@ -95,9 +96,6 @@ fn evaluate_command(step: u32, moment: u32) {
     if moment == START || N_COMMAND_WAVES > 0u || CARRIES {
         actuator.gain = command_gain;
         actuator.bias = command_bias;
-    }
-    if N_DEAD_ZONES > 0u {
-        actuator.dead_zone = dead_zone;
     }
     for (var k = COMMAND_WAVES; k < COMMAND_WAVES + N_COMMAND_WAVES; k++) {
         let sine = oscillation_turned(k - SINES, moment != START);

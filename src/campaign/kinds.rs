@@ -43,7 +43,8 @@ macro_rules! kinds {
                 self.row().parameters
             }
 
-            /// Whether it is continuously differentiable in time where it neither begins nor ends within the run.
+            /// Whether (24) may be asked about it: whether it is known to be continuously differentiable in time where
+            /// it neither begins nor ends within the run. A kind that nobody has examined is not.
             #[must_use]
             pub fn is_smooth(self) -> bool {
                 self.row().is_smooth
@@ -206,6 +207,7 @@ pub(crate) const LOST_SHARE: Parameter = required("magnitude", Bounds::Share);
 /// Share by which a property of the plant grows; less than all of it may be lost.
 pub(crate) const GROWTH: Parameter = of_agent("magnitude", Bounds::AtLeast(-0.9));
 pub(crate) const PAYLOAD_MASS: Parameter = of_agent("mass_kg", Bounds::NonNegative);
+/// Up to which size a command gives nothing.
 pub(crate) const HALF_WIDTH: Parameter = required("magnitude", Bounds::NonNegative);
 pub(crate) const LARGEST_RATE: Parameter = required("rate", Bounds::NonNegative);
 pub(crate) const DRIFT_RATE: Parameter = required("rate", Bounds::Any);

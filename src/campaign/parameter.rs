@@ -117,6 +117,13 @@ impl Parameter {
         let mut names = parameters.iter().map(|parameter| parameter.name);
         names.position(|name| name == self.name)
     }
+
+    /// Its value on a channel among those drawn for a kind, `[parameter][channel]`; not a number if the kind has no
+    /// such parameter, which would be a mistake of whoever asks that no episode survives.
+    pub(crate) fn value(&self, parameters: &[Self], drawn: &[Vec<f64>], channel: usize) -> f64 {
+        let place = self.place_in(parameters);
+        place.map_or(f64::NAN, |place| drawn[place][channel])
+    }
 }
 
 /// A parameter of each channel that has to be given.

@@ -48,8 +48,8 @@ pub(super) const OF_SIGNALS: &[Control] = &[
     ),
     control(
         "command_path",
-        "zone = zone + window_at",
-        "zone = window_at",
+        "wide = wide + window_at",
+        "wide = window_at",
         "exogenous_inputs_hold",
     ),
     control(

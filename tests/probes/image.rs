@@ -11,7 +11,7 @@ use crate::model::exogenous::delay_line::DelayLine;
 use crate::model::exogenous::lists::Item;
 
 /// Words of the image that every shape has, before its waves and rings.
-const FIXED_IMAGE: usize = 63 + N_EXTREMES + N_SUMS;
+const FIXED_IMAGE: usize = 62 + N_EXTREMES + N_SUMS;
 /// Where in the image it is told when the channel failed.
 pub(super) const FAILED: usize = 43;
 /// Where it is told when the error was last outside, at all and before the first fault.
@@ -89,7 +89,6 @@ pub(super) fn image<const NC: usize, const NS: usize, const NX: usize>(
     words.extend(signals.last_measured[c].map(Near));
     let acting = signals.actuator.dead_zone;
     words.push(Near(acting.map_or(Tracked::exact(0.0), |zone| zone[c])));
-    words.push(Near(signals.command.dead_zone[c]));
     words.extend(metrics.largest.numbers().into_iter().map(Near));
     words.extend(metrics.recent.numbers().into_iter().map(Near));
     let none = Tracked::exact(0.0);

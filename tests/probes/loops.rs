@@ -4,10 +4,8 @@ use super::harness::{Compared, Expected, Lab};
 use super::numbers::Numbers;
 use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
-use crate::model::controller::Measured;
-use crate::model::controller::observer_feedback::{
-    fault_estimates, feedback, injected, step_channel,
-};
+use crate::model::controller::observer_feedback::{ChannelGains, injected};
+use crate::model::controller::{Law, Measured};
 use crate::model::integrator::Step;
 use crate::model::plant::uav::Attitude;
 use crate::model::plant::{Inputs, ReferenceRow, Response};
@@ -143,9 +141,9 @@ pub(super) fn controller<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         scene.each(|scene, a, c| {
             let gains = &world.gains[c];
             let channel = scene.group.agents[a].channels[c];
-            let sent = at_stage!(stage, STAGE, feedback(gains, channel.at::<STAGE>()));
+            let sent = at_stage!(stage, STAGE, gains.feedback(channel.at::<STAGE>()));
             scene.answer_number(a, c, sent);
-            for estimate in fault_estimates(channel.at::<0>()) {
+            for estimate in ChannelGains::<f32>::fault_estimates(channel.at::<0>()) {
                 scene.answer_number(a, c, estimate);
             }
             let [x, y, z, base] = scene.numbers(a, c);
@@ -175,8 +173,7 @@ pub(super) fn step_channels<P: Flies<NC, NX>, const NC: usize, const NS: usize, 
             };
             let channel = &mut scene.group.agents[a].channels[c];
             at_stage!(stage, STAGE, {
-                step_channel::<_, NS, STAGE>(
-                    &world.gains[c],
+                world.gains[c].step::<STAGE>(
                     channel,
                     acceleration,
                     &measured,

@@ -85,9 +85,8 @@ fn load() {
     last_sent = taken_number(57u);
     last_arrived = taken_number(58u);
     last_measured = vec2(taken_number(59u), taken_number(60u));
-    dead_zone = taken_number(62u);
-    load_metrics(63u);
-    var at = 63u + N_EXTREMES + N_SUMS;
+    load_metrics(62u);
+    var at = 62u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         waves[k].phase = taken(at);
         waves[k].held = taken_number(at + 1u);
@@ -140,9 +139,8 @@ fn leave() {
     give_number(59u, last_measured.x);
     give_number(60u, last_measured.y);
     give_number(61u, actuator.dead_zone);
-    give_number(62u, dead_zone);
-    leave_metrics(63u);
-    var at = 63u + N_EXTREMES + N_SUMS;
+    leave_metrics(62u);
+    var at = 62u + N_EXTREMES + N_SUMS;
     for (var k = 0u; k < N_WAVES; k++) {
         give(at, waves[k].phase);
         give_number(at + 1u, waves[k].held);

@@ -306,9 +306,8 @@ fn remembered<const NC: usize>(signals: &mut ExogenousInputs<Tracked, NC>, numbe
         *held = held.map(|_| some(1.0));
     }
     signals.command.slew = signals.command.slew.map(|_| some(0.5).abs());
-    signals.command.dead_zone = signals.command.dead_zone.map(|_| some(0.5).abs());
     if !signals.lists.dead_zones.is_empty() {
-        signals.actuator.dead_zone = Some(signals.command.dead_zone.map(|_| some(0.5).abs()));
+        signals.actuator.dead_zone = Some([(); NC].map(|()| some(0.5).abs()));
     }
     signals.last_measured = signals.last_measured.map(|last| last.map(|_| some(1.0)));
     signals.inverse_inertia = signals

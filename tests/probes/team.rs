@@ -8,7 +8,8 @@ use super::tracked::Tracked;
 use super::world::{Flies, Scene, World};
 use crate::backend::gpu::layout::NEVER;
 use crate::model::agent::{Agent, Coupling, Team};
-use crate::model::controller::observer_feedback::{ChannelGains, fault_estimates};
+use crate::model::controller::Law;
+use crate::model::controller::observer_feedback::ChannelGains;
 use crate::model::exogenous::actuator::Actuator;
 use crate::model::plant::{ReferenceRow, Response};
 use crate::model::team::finite;
@@ -431,7 +432,7 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
                 // What is shown has no bounds on its error, so it is worked out once more.
                 let agent = &scene.group.agents[a];
                 let state = agent.channels[c].at::<0>();
-                let [f1_hat, f2_hat] = fault_estimates(state);
+                let [f1_hat, f2_hat] = ChannelGains::<f32>::fault_estimates(state);
                 let again = [
                     position[c] - state[1],
                     position[c],

@@ -59,7 +59,7 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         &[
             ("measured", "channel_gains_measured"),
             ("feedback", "feedback"),
-            ("step_channel", "step_channel"),
+            ("step", "step_channel"),
             ("injected", "injected"),
             ("fault_estimates", "fault_estimates"),
         ],
@@ -292,7 +292,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "a row of the table is one value",
     ),
     (
-        &["start", "step", "error_estimate"],
+        &["start", "error_estimate"],
         "the loop asks a family of controllers; the shaders have one",
     ),
     (

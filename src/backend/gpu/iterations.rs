@@ -12,7 +12,7 @@ use super::layout::{N_EXTREMES, N_SUMS, SHOWN_WORDS};
 use super::shape::Shape;
 use crate::model::agent::Coupling;
 use crate::model::controller::observer_feedback::FTC_STATES;
-use crate::model::exogenous::lists::{LISTS, ListShape, SignalLists};
+use crate::model::exogenous::lists::{LISTS, WAVE_LISTS};
 use crate::random::philox::ROUNDS;
 
 /// Mesa's software drivers (llvmpipe) end all loops of an invocation after 65,535 iterations in all (`lp_bld_limits.h`,
@@ -76,11 +76,7 @@ impl Shape {
         let random = passes(u64::from(ROUNDS));
 
         // Signals that are evaluated: a loop of each list of waves, and one of the rings of commands.
-        let shapes = SignalLists::<f32, 1>::SHAPES.iter();
-        let wave_lists = shapes
-            .filter(|shape| **shape == ListShape::Oscillation)
-            .count();
-        let evaluate = waves + wave_lists as u64 + passes(rings);
+        let evaluate = waves + WAVE_LISTS as u64 + passes(rings);
         // What is held over a step: a loop of each list, one of turbulences, the sum of the commands that leak, and
         // when it changes next.
         let hold = if_there(lists.leaks(), passes(team))

@@ -131,7 +131,8 @@ impl Shape {
             ("TORQUE", 3),
             ("COMMAND_LOW", 4),
             ("COMMAND_HIGH", 5),
-            ("COMMAND_DEAD_ZONE", 6),
+            // Behind all that thrust shows without it.
+            ("COMMAND_DEAD_ZONE", PlantKind::Thrust.spec().shared),
         ] {
             text.count(name, slot);
         }

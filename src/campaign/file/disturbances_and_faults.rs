@@ -1,6 +1,6 @@
 //! `[[disturbance]]` and `[[fault]]` as they are written.
 
-use super::parameters::{Parameters, parameters, table_and_block};
+use super::parameters::{Parameters, table_and_block};
 use super::value::{ChannelsFile, Value, some_tables, some_word, word};
 use crate::campaign::kinds::{DisturbanceKind, FaultKind, FaultTarget};
 use schemars::JsonSchema;

@@ -14,7 +14,7 @@ pub use value::{ChannelsFile, DistributionFile, NormalFile, Numbers, TruncatedNo
 
 use crate::agent::ActuationKind;
 use crate::util::fixed_list::List;
-use parameters::parameters;
+use parameters::table_and_block;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -311,38 +311,25 @@ pub struct WeightsFile {
     pub smoothing_weights: Option<Vec<f64>>,
 }
 
-/// `[initial]`
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InitialFile {
-    /// x - r at t = 0, m or rad.
-    pub error: Option<Value>,
-    /// x' - r' at t = 0, m/s or rad/s.
-    pub error_rate: Option<Value>,
-    /// Integral of the error at t = 0, m s or rad s.
-    pub error_integral: Option<Value>,
-    /// What the observers start from (default "measured").
-    #[serde(default, deserialize_with = "some_word")]
-    pub observer: Option<ObserverStart>,
-    /// Blocks that override the keys above, one per agent.
-    #[serde(default, deserialize_with = "some_tables")]
-    pub agents: Option<Vec<InitialBlock>>,
+table_and_block! {
+    /// `[initial]`
+    InitialFile {
+        /// What the observers start from (default "measured").
+        #[serde(default, deserialize_with = "some_word")]
+        observer: Option<ObserverStart>,
+    }
+    /// One agent's initial errors; what is absent is taken from `[initial]`.
+    InitialBlock {
+    }
+    parameters {
+        /// x - r at t = 0, m or rad.
+        error,
+        /// x' - r' at t = 0, m/s or rad/s.
+        error_rate,
+        /// Integral of the error at t = 0, m s or rad s.
+        error_integral,
+    }
 }
-
-/// One agent's initial errors; what is absent is taken from `[initial]`.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InitialBlock {
-    /// x - r at t = 0, m or rad.
-    pub error: Option<Value>,
-    /// x' - r' at t = 0, m/s or rad/s.
-    pub error_rate: Option<Value>,
-    /// Integral of the error at t = 0, m s or rad s.
-    pub error_integral: Option<Value>,
-}
-
-parameters!(InitialFile: error, error_rate, error_integral);
-parameters!(InitialBlock: error, error_rate, error_integral);
 
 /// What an observer starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]

@@ -10,22 +10,6 @@ pub(in crate::campaign) trait Parameters {
     fn parameter(&self, name: &str) -> Option<&Value>;
 }
 
-macro_rules! parameters {
-    ($table:ty: $($name:ident),*) => {
-        impl Parameters for $table {
-            const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
-            /// The value of a parameter, if the table gives one.
-    fn parameter(&self, name: &str) -> Option<&Value> {
-                match name {
-                    $(stringify!($name) => self.$name.as_ref(),)*
-                    _ => None,
-                }
-            }
-        }
-    };
-}
-pub(super) use parameters;
-
 /// A table and its block of one agent: what each has of its own, and the parameters, which both have.
 macro_rules! table_and_block {
     (
@@ -54,8 +38,19 @@ macro_rules! table_and_block {
             $($(#[$doc])* pub $name: Option<Value>,)*
         }
 
-        parameters!($table: $($name),*);
-        parameters!($block: $($name),*);
+        table_and_block!(@looked_up $table: $($name),*);
+        table_and_block!(@looked_up $block: $($name),*);
+    };
+    (@looked_up $table:ty: $($name:ident),*) => {
+        impl Parameters for $table {
+            const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
+            fn parameter(&self, name: &str) -> Option<&Value> {
+                match name {
+                    $(stringify!($name) => self.$name.as_ref(),)*
+                    _ => None,
+                }
+            }
+        }
     };
 }
 pub(super) use table_and_block;

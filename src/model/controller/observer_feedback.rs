@@ -59,11 +59,21 @@ impl<L: Lane, const NS: usize> Law<L, NS> for ChannelGains<L::Real> {
         state[OBSERVER..OBSERVER + 3].copy_from_slice(&estimates);
     }
 
+    // u_fb = K ehat, (21).
     #[inline(always)]
     fn feedback(&self, state: &[L; NS]) -> L {
-        feedback(self, state)
+        let k = &self.feedback;
+        let mut sum = state[OBSERVER] * L::splat(k[0]);
+        sum = state[OBSERVER + 1].mul_add(L::splat(k[1]), sum);
+        sum = state[OBSERVER + 2].mul_add(L::splat(k[2]), sum);
+        if NS == FTC_STATES {
+            sum = state[OBSERVER + 3].mul_add(L::splat(k[3]), sum);
+            sum = state[OBSERVER + 4].mul_add(L::splat(k[4]), sum);
+        }
+        sum
     }
 
+    // Each row is taken as soon as it is known, so that few values live at once.
     #[inline(always)]
     fn step<const STAGE: usize>(
         &self,
@@ -73,14 +83,57 @@ impl<L: Lane, const NS: usize> Law<L, NS> for ChannelGains<L::Real> {
         applied_feedback: L,
         h: &Step<L::Real>,
     ) {
-        step_channel::<L, NS, STAGE>(
-            self,
-            channel,
-            error_acceleration,
-            measured,
-            applied_feedback,
-            h,
-        );
+        let [b1, b2] = [
+            L::splat(self.sensor_fault_input[0]),
+            L::splat(self.sensor_fault_input[1]),
+        ];
+        let [a, b, c] = [
+            L::splat(self.smoothing[0]),
+            L::splat(self.smoothing[1]),
+            L::splat(self.smoothing[2]),
+        ];
+        let state = *channel.at::<STAGE>();
+        let unexplained = if NS == FTC_STATES {
+            measured.sensor_fault - state[OBSERVER + 5]
+        } else {
+            measured.sensor_fault
+        };
+        let [error, rate] = [state[1] + measured.off[0], state[2] + measured.off[1]];
+        // y - yhat of (20); C0 r cancels.
+        let innovation = [
+            state[0] - state[OBSERVER],
+            unexplained.mul_add(b1, error - state[OBSERVER + 1]),
+            unexplained.mul_add(b2, rate - state[OBSERVER + 2]),
+        ];
+        let integrand = if measured.integral {
+            measured.sensor_fault.mul_add(b1, error)
+        } else {
+            state[1]
+        };
+        channel.take::<STAGE>(0, integrand, h);
+        step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
+        let rows = &self.injection;
+        let mut row = injected(&rows[0], &innovation, state[OBSERVER + 1]);
+        channel.take::<STAGE>(OBSERVER, row, h);
+        row = injected(&rows[1], &innovation, state[OBSERVER + 2]);
+        channel.take::<STAGE>(OBSERVER + 1, row, h);
+        if NS == FTC_STATES {
+            let [f1, f1_before] = [state[OBSERVER + 3], state[OBSERVER + 4]];
+            row = injected(&rows[2], &innovation, f1) + applied_feedback;
+            channel.take::<STAGE>(OBSERVER + 2, row, h);
+            row = injected(&rows[3], &innovation, f1.mul_add(a, f1_before * b));
+            channel.take::<STAGE>(OBSERVER + 3, row, h);
+            row = injected(&rows[4], &innovation, (f1 - f1_before) * c);
+            channel.take::<STAGE>(OBSERVER + 4, row, h);
+            let [f2, f2_before] = [state[OBSERVER + 5], state[OBSERVER + 6]];
+            row = injected(&rows[5], &innovation, f2.mul_add(a, f2_before * b));
+            channel.take::<STAGE>(OBSERVER + 5, row, h);
+            row = injected(&rows[6], &innovation, (f2 - f2_before) * c);
+            channel.take::<STAGE>(OBSERVER + 6, row, h);
+        } else {
+            row = injected(&rows[2], &innovation, applied_feedback);
+            channel.take::<STAGE>(OBSERVER + 2, row, h);
+        }
     }
 
     #[inline(always)]
@@ -88,92 +141,14 @@ impl<L: Lane, const NS: usize> Law<L, NS> for ChannelGains<L::Real> {
         [state[OBSERVER], state[OBSERVER + 1], state[OBSERVER + 2]]
     }
 
+    // A PID has no estimates and is taken to estimate zero.
     #[inline(always)]
     fn fault_estimates(state: &[L; NS]) -> [L; 2] {
-        fault_estimates(state)
-    }
-}
-
-/// u_fb = K ehat, (21).
-#[inline(always)]
-pub(crate) fn feedback<L: Lane, const NS: usize>(
-    gains: &ChannelGains<L::Real>,
-    state: &[L; NS],
-) -> L {
-    let k = &gains.feedback;
-    let mut sum = state[OBSERVER] * L::splat(k[0]);
-    sum = state[OBSERVER + 1].mul_add(L::splat(k[1]), sum);
-    sum = state[OBSERVER + 2].mul_add(L::splat(k[2]), sum);
-    if NS == FTC_STATES {
-        sum = state[OBSERVER + 3].mul_add(L::splat(k[3]), sum);
-        sum = state[OBSERVER + 4].mul_add(L::splat(k[4]), sum);
-    }
-    sum
-}
-
-/// Takes one stage of the channel's step: its derivative [e, e', e'', ehat' of (20)], each row taken as soon as it is
-/// known, so that few values live at once.
-///
-/// `applied_feedback` is the feedback of which the observer learns that it was commanded.
-#[inline(always)]
-pub(crate) fn step_channel<L: Lane, const NS: usize, const STAGE: usize>(
-    gains: &ChannelGains<L::Real>,
-    channel: &mut Stepped<L, NS>,
-    error_acceleration: L,
-    measured: &Measured<L>,
-    applied_feedback: L,
-    h: &Step<L::Real>,
-) {
-    let [b1, b2] = [
-        L::splat(gains.sensor_fault_input[0]),
-        L::splat(gains.sensor_fault_input[1]),
-    ];
-    let [a, b, c] = [
-        L::splat(gains.smoothing[0]),
-        L::splat(gains.smoothing[1]),
-        L::splat(gains.smoothing[2]),
-    ];
-    let state = *channel.at::<STAGE>();
-    let unexplained = if NS == FTC_STATES {
-        measured.sensor_fault - state[OBSERVER + 5]
-    } else {
-        measured.sensor_fault
-    };
-    let [error, rate] = [state[1] + measured.off[0], state[2] + measured.off[1]];
-    // y - yhat of (20); C0 r cancels.
-    let innovation = [
-        state[0] - state[OBSERVER],
-        unexplained.mul_add(b1, error - state[OBSERVER + 1]),
-        unexplained.mul_add(b2, rate - state[OBSERVER + 2]),
-    ];
-    let integrand = if measured.integral {
-        measured.sensor_fault.mul_add(b1, error)
-    } else {
-        state[1]
-    };
-    channel.take::<STAGE>(0, integrand, h);
-    step_error::<L, NS, STAGE>(channel, &state, error_acceleration, h);
-    let rows = &gains.injection;
-    let mut row = injected(&rows[0], &innovation, state[OBSERVER + 1]);
-    channel.take::<STAGE>(OBSERVER, row, h);
-    row = injected(&rows[1], &innovation, state[OBSERVER + 2]);
-    channel.take::<STAGE>(OBSERVER + 1, row, h);
-    if NS == FTC_STATES {
-        let [f1, f1_before] = [state[OBSERVER + 3], state[OBSERVER + 4]];
-        row = injected(&rows[2], &innovation, f1) + applied_feedback;
-        channel.take::<STAGE>(OBSERVER + 2, row, h);
-        row = injected(&rows[3], &innovation, f1.mul_add(a, f1_before * b));
-        channel.take::<STAGE>(OBSERVER + 3, row, h);
-        row = injected(&rows[4], &innovation, (f1 - f1_before) * c);
-        channel.take::<STAGE>(OBSERVER + 4, row, h);
-        let [f2, f2_before] = [state[OBSERVER + 5], state[OBSERVER + 6]];
-        row = injected(&rows[5], &innovation, f2.mul_add(a, f2_before * b));
-        channel.take::<STAGE>(OBSERVER + 5, row, h);
-        row = injected(&rows[6], &innovation, (f2 - f2_before) * c);
-        channel.take::<STAGE>(OBSERVER + 6, row, h);
-    } else {
-        row = injected(&rows[2], &innovation, applied_feedback);
-        channel.take::<STAGE>(OBSERVER + 2, row, h);
+        if NS == FTC_STATES {
+            [state[OBSERVER + 3], state[OBSERVER + 5]]
+        } else {
+            [L::number(0.0); 2]
+        }
     }
 }
 
@@ -183,14 +158,4 @@ pub(crate) fn injected<L: Lane>(row: &[L::Real; 3], innovation: &[L; 3], base: L
     let mut sum = innovation[0].mul_add(L::splat(row[0]), base);
     sum = innovation[1].mul_add(L::splat(row[1]), sum);
     innovation[2].mul_add(L::splat(row[2]), sum)
-}
-
-/// The estimates of f1 and f2; a PID has none and is taken to estimate zero.
-#[inline(always)]
-pub(crate) fn fault_estimates<L: Lane, const NS: usize>(state: &[L; NS]) -> [L; 2] {
-    if NS == FTC_STATES {
-        [state[OBSERVER + 3], state[OBSERVER + 5]]
-    } else {
-        [L::number(0.0); 2]
-    }
 }

@@ -11,8 +11,6 @@ pub(crate) struct HeldCommand<L, const NC: usize> {
     pub(crate) bias: [L; NC],
     /// By how much the acting command may change in a step.
     pub(crate) slew: [L; NC],
-    /// Up to which size a command gives nothing.
-    pub(crate) dead_zone: [L; NC],
     /// Whether the link brings no new command (1 or 0).
     pub(crate) blocked: [L; NC],
 }
@@ -25,7 +23,6 @@ impl<L: Lane, const NC: usize> HeldCommand<L, NC> {
             gain: [L::number(1.0); NC],
             bias: zero,
             slew: [L::splat(L::Real::MAX); NC],
-            dead_zone: zero,
             blocked: zero,
         }
     }
@@ -39,6 +36,7 @@ pub(crate) struct Actuator<L, const NC: usize> {
     pub(crate) bias: [L; NC],
     pub(crate) low: [L; NC],
     pub(crate) high: [L; NC],
+    /// Up to which size a command gives nothing in this step, if the campaign has such faults.
     pub(crate) dead_zone: Option<[L; NC]>,
 }
 

@@ -66,12 +66,14 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             );
         }
         self.command.slew[c] = slew;
-        // Two zones, one after the other, are one as wide as both.
-        let mut dead_zone = zero;
-        for zone in &self.lists.dead_zones {
-            dead_zone = dead_zone + zone[c].at(now);
+        if !self.lists.dead_zones.is_empty() {
+            // Two zones, one after the other, are one as wide as both.
+            let mut wide = zero;
+            for zone in &self.lists.dead_zones {
+                wide = wide + zone[c].at(now);
+            }
+            self.actuator.dead_zone.get_or_insert([zero; NC])[c] = wide;
         }
-        self.command.dead_zone[c] = dead_zone;
         let mut blocked = zero;
         for hold in &self.lists.command_holds {
             let [holds, _] = hold.at(c, step, seed, episodes);
@@ -89,9 +91,6 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         if moment == Moment::Start || !self.lists.command_waves.is_empty() || self.carries() {
             self.actuator.gain = self.command.gain;
             self.actuator.bias = self.command.bias;
-        }
-        if !self.lists.dead_zones.is_empty() {
-            self.actuator.dead_zone = Some(self.command.dead_zone);
         }
         for waves in &mut self.lists.command_waves {
             for c in 0..NC {

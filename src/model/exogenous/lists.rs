@@ -166,10 +166,21 @@ signal_lists! {
     sensor_rings: DelayLine<L, NC, 2>,
 }
 
+/// How many lists of oscillations there are.
+pub(crate) const WAVE_LISTS: usize = {
+    let shapes = SignalLists::<f32, 1>::SHAPES;
+    let (mut list, mut count) = (0, 0);
+    while list < shapes.len() {
+        count += matches!(shapes[list], ListShape::Oscillation) as usize;
+        list += 1;
+    }
+    count
+};
+
 impl<L: Lane, const NC: usize> SignalLists<L, NC> {
-    /// The lists of oscillations.
+    /// The lists of oscillations: one that is forgotten here does not compile.
     #[inline(always)]
-    pub(crate) fn waves_mut(&mut self) -> [&mut Vec<[Oscillation<L>; NC]>; 5] {
+    pub(crate) fn waves_mut(&mut self) -> [&mut Vec<[Oscillation<L>; NC]>; WAVE_LISTS] {
         [
             &mut self.sines,
             &mut self.gusts,

@@ -19,13 +19,6 @@ use crate::model::lanes::{Lane, MAX_WIDTH};
 use crate::random::philox::{Address, Stream};
 use std::f64::consts::TAU;
 
-/// The value of a parameter on a channel; not a number if the kind has no such parameter, which would be a mistake of
-/// this file that no episode survives.
-fn value(kind: DisturbanceKind, draw: &[Vec<f64>], parameter: &Parameter, channel: usize) -> f64 {
-    let place = parameter.place_in(kind.parameters());
-    place.map_or(f64::NAN, |place| draw[place][channel])
-}
-
 impl LaneBlock<'_> {
     /// Adds what a disturbance does, if it may act (or does) in some lane.
     pub(super) fn add_disturbance<L: Lane, const NC: usize>(
@@ -39,10 +32,9 @@ impl LaneBlock<'_> {
     ) {
         let values = |parameter: &Parameter, c: usize| {
             self.lanes::<L>(agent, |draw| {
-                value(
-                    disturbance.kind,
+                parameter.value(
+                    disturbance.kind.parameters(),
                     &draw.disturbances[index],
-                    parameter,
                     first + c,
                 )
             })
@@ -122,12 +114,7 @@ impl LaneBlock<'_> {
         felt.filter_map(|(index, felt)| {
             let of = |parameter: &Parameter, pick: fn(f64) -> f64| {
                 self.lanes::<L>(agent, |draw| {
-                    pick(value(
-                        felt.kind,
-                        &draw.disturbances[index],
-                        parameter,
-                        HEIGHT,
-                    ))
+                    pick(parameter.value(felt.kind.parameters(), &draw.disturbances[index], HEIGHT))
                 })
             };
             let force_n = of(&JET_FORCE, |force_n| force_n);
@@ -182,10 +169,9 @@ impl LaneBlock<'_> {
         let members = std::array::from_fn(|c| member(agent, first + c));
         let filter = |c: usize, draw: &AgentDraw| {
             let of = |parameter: &Parameter| {
-                value(
-                    disturbance.kind,
+                parameter.value(
+                    disturbance.kind.parameters(),
                     &draw.disturbances[index],
-                    parameter,
                     first + c,
                 )
             };

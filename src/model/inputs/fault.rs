@@ -162,11 +162,8 @@ impl FaultLanes<'_> {
         self.lanes::<L>(&|draw| self.value(draw, parameter, self.first + c))
     }
 
-    /// The value of a parameter on a channel; not a number if the fault's kind has no such parameter, which would be a
-    /// mistake of this file that no episode survives.
     fn value(&self, draw: &FaultDraw, parameter: &Parameter, channel: usize) -> f64 {
-        let place = parameter.place_in(self.fault.kind.parameters());
-        place.map_or(f64::NAN, |place| draw.parameters[place][channel])
+        parameter.value(self.fault.kind.parameters(), &draw.parameters, channel)
     }
 
     /// A value from the fault's onset to its end, along its ramp.

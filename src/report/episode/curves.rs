@@ -151,7 +151,7 @@ pub(super) fn panel(
         draw(trace, quantity.simulated(), trace.color(), Stroke::Solid);
     }
     if let (Some(estimate), Some(first)) = (quantity.estimate(), shown.first()) {
-        draw(first, estimate, view.estimate_ink(), Stroke::Dashed);
+        draw(first, estimate, view.estimate_color(), Stroke::Dashed);
     }
     let robot = matches!(view.campaign.agent, Agent::Biped(_));
     let unit = quantity.unit(view.campaign.unit(channel), robot);
@@ -273,7 +273,7 @@ fn legend(
     }
     if quantity.estimate().is_some() {
         let text = format!("estimate of {}", asked.name);
-        legend.push(LegendEntry::dashes(view.estimate_ink(), text));
+        legend.push(LegendEntry::dashes(view.estimate_color(), text));
     }
     if drawn.iter().any(|(panel, _)| !panel.spans.is_empty()) {
         legend.push(LegendEntry::shade(

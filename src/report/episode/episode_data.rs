@@ -78,7 +78,7 @@ impl<'a> EpisodeView<'a> {
     }
 
     /// The colour of an estimate: that of none of the controllers.
-    pub(super) fn estimate_ink(&self) -> Color {
+    pub(super) fn estimate_color(&self) -> Color {
         Color::Series(self.campaign.controllers.len().max(3))
     }
 

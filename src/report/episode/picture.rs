@@ -62,7 +62,7 @@ fn legend(view: &EpisodeView<'_>) -> Vec<LegendEntry> {
         .map(|trace| LegendEntry::line(trace.color(), trace.name))
         .collect();
     legend.extend([
-        LegendEntry::dashes(view.estimate_ink(), "estimate of e"),
+        LegendEntry::dashes(view.estimate_color(), "estimate of e"),
         LegendEntry::line(
             Color::Truth,
             "f1, f2; their estimates in the colour of the controller",

@@ -23,7 +23,8 @@ const RESOLVED: f64 = 0.25;
 
 /// What inequality (24) says, for readers without the paper.
 pub const INEQUALITY: &str = "(24) of the paper: weighted errors and control effort are at most the square of the attenuation level times \
-     the energy of the model error (faults and disturbances as the observer meets them), plus V(0) for the initial state";
+     the energy of the model error (the effect of faults, disturbances and wrong parameters), plus V(0) for the initial \
+     state";
 
 /// What (24) says about each channel of an episode, `[agent][channel]`.
 pub type Attenuations = Vec<Vec<Result<Attenuation, NotApplicable>>>;
