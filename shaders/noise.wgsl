@@ -8,7 +8,7 @@ fn normal_pair(word: u32, turn: u32) -> vec2<f32> {
 }
 
 fn own_member() -> u32 {
-    return own.agent * MEMBERS_PER_AGENT + uniforms.first_channel + own.channel;
+    return (FIRST_AGENT + own.agent) * MEMBERS_PER_AGENT + uniforms.first_channel + own.channel;
 }
 
 // Draws the four samples that block number `index` of a noise holds.

@@ -38,7 +38,7 @@ fn intermittent_window_at(k: u32, step: u32) -> vec2<f32> {
     let since = step - drawn(SWITCHES + 4u * k);
     let together = BURST_TOGETHER[burst];
     let channel = select(uniforms.first_channel + own.channel, 0u, together);
-    let member = own.agent * MEMBERS_PER_AGENT + channel;
+    let member = (FIRST_AGENT + own.agent) * MEMBERS_PER_AGENT + channel;
     let slot = since / drawn(BURSTS + 2u * burst);
     let address = Address(drawn(EPISODE), STREAM_INTERMITTENT, BURST_ENTRIES[burst], member, slot);
     let words = address_words(address, uniforms.seed);

@@ -36,14 +36,14 @@
 //! use urts_mc::simulation::{RunOptions, simulate};
 //!
 //! let campaign = Campaign::load("campaigns/smoke.toml".as_ref())?.with_episodes(16)?;
-//! let gains = GainSet::synthesize_or_load(&campaign)?;
+//! let gains = GainSet::of_groups(&campaign)?;
 //! let options = RunOptions::cpu(Precision::F64);
 //! let simulation = simulate(&campaign, &gains, &options, None, &|_finished| ())?;
 //! let results = Results::of(&campaign, &simulation.tables.scores, &simulation.pool);
 //!
 //! for row in results.summary.iter().filter(|row| row.metric == "rmse") {
-//!     let (share, error, _interval) = row.quantiles[0];
-//!     println!("{} {}: {share} of the RMS errors are below {error:?}", row.failures.controller, row.group);
+//!     let median = row.quantiles[0];
+//!     println!("{}, {}: half of the RMS errors are below {:?}", row.failures.controller, row.group, median.value);
 //! }
 //! assert_eq!(simulation.episodes(), 16);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -53,6 +53,8 @@
 //! - A [`campaign::Campaign`] is complete and consistent; nothing after it checks input again.
 //! - An episode depends on (campaign, seed, index) alone: no clock, environment, thread, batch or order reaches a
 //!   number.
+//! - Agents of one group never act on those of another: [`draw`], [`model`] and [`backend`] know a
+//!   [`campaign::AgentGroup`] and nothing else, [`simulation`] brings the groups of an episode together.
 //! - [`model`] is written once, generic over the lane type; what a campaign does not use is not in its loop.
 //! - Not-a-number is a verdict ("diverged"), never a value in a statistic and never a dropped row.
 //! - A directory with a manifest holds all episodes that it counts; files appear under their final name only when

@@ -1,7 +1,7 @@
 //! The CPU backend: blocks of episodes over all cores, each block in the widest lanes that the processor has.
 
 use super::EpisodeResult;
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::draw::{Episode, draw};
 use crate::model::controller::kinds::Controller;
 use crate::model::episode::{AgentOutcome, Model, Snapshot};
@@ -68,13 +68,13 @@ impl Simd {
 pub struct Cpu(Loop);
 
 enum Loop {
-    F64(Flyer<f64>),
-    F32(Flyer<f32>, Simd),
+    F64(Simulator<f64>),
+    F32(Simulator<f32>, Simd),
 }
 
 /// The loop of a campaign in one precision, and its controllers by name and order.
-struct Flyer<R> {
-    campaign: Campaign,
+struct Simulator<R> {
+    group: AgentGroup,
     model: Model<R>,
     controllers: Vec<Controller<R>>,
 }
@@ -85,18 +85,18 @@ impl Cpu {
     /// it has; [`Cpu::simd`] says which is used.
     #[must_use]
     pub fn new(
-        campaign: &Campaign,
+        group: &AgentGroup,
         gains: &[Vec<LoopGains>],
         precision: Precision,
         simd: Option<Simd>,
     ) -> Self {
         Self(match precision {
-            Precision::F64 => Loop::F64(Flyer::new(campaign, gains)),
+            Precision::F64 => Loop::F64(Simulator::new(group, gains)),
             Precision::F32 => {
                 let simd = simd
                     .filter(|simd| simd.is_available())
                     .unwrap_or_else(Simd::widest);
-                Loop::F32(Flyer::new(campaign, gains), simd)
+                Loop::F32(Simulator::new(group, gains), simd)
             }
         })
     }
@@ -163,12 +163,12 @@ impl Cpu {
     }
 }
 
-impl<R: Real> Flyer<R> {
-    fn new(campaign: &Campaign, gains: &[Vec<LoopGains>]) -> Self {
+impl<R: Real> Simulator<R> {
+    fn new(group: &AgentGroup, gains: &[Vec<LoopGains>]) -> Self {
         let controllers = gains.iter().map(|groups| Controller::new(groups)).collect();
         Self {
-            campaign: campaign.clone(),
-            model: Model::new(campaign),
+            group: group.clone(),
+            model: Model::new(group),
             controllers,
         }
     }
@@ -184,7 +184,7 @@ impl<R: Real> Flyer<R> {
             .flat_map_iter(|block| {
                 let count = block.end - block.start;
                 let episodes: Vec<Episode> =
-                    block.map(|episode| draw(&self.campaign, episode)).collect();
+                    block.map(|episode| draw(&self.group, episode)).collect();
                 let mut simulated: Vec<EpisodeResult> = episodes
                     .iter()
                     .map(|episode| EpisodeResult {
@@ -214,7 +214,7 @@ impl<R: Real> Flyer<R> {
     ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
         self.model.trace::<L>(
             &self.controllers[controller],
-            &draw(&self.campaign, episode),
+            &draw(&self.group, episode),
             every,
         )
     }

@@ -32,8 +32,21 @@ impl<'a> Written<'a> {
 /// A campaign file under examination.
 pub(super) struct Check<'a> {
     pub(super) source: Source<'a>,
+    /// What precedes the keys of a group of agents: `group[1].`, or nothing.
+    prefix: String,
     /// Names of an agent's channels, once they are known.
     pub(super) channels: Vec<Arc<str>>,
+}
+
+impl<'a> Check<'a> {
+    /// Of tables whose keys have a prefix.
+    pub(super) fn new(source: Source<'a>, prefix: String) -> Self {
+        Self {
+            source,
+            prefix,
+            channels: Vec::new(),
+        }
+    }
 }
 
 impl Check<'_> {
@@ -44,7 +57,7 @@ impl Check<'_> {
         limit: &str,
         remedy: &str,
     ) -> CampaignError {
-        let key = key.into();
+        let key = self.prefix.clone() + &key.into();
         let place = self.source.place_of(&key);
         let place = place.map_or(String::new(), |place| format!(" ({place})"));
         CampaignError::Invalid {

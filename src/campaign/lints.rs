@@ -1,10 +1,12 @@
 //! What a campaign may do, but its writer has probably not meant: said before the run, forbidden by nothing.
 
+use super::common::Requirement;
 use super::distribution::Distribution;
 use super::disturbances_and_faults::Fault;
+use super::group::AgentGroup;
 use super::plan::ALL;
 use super::quantity::RandomQuantity;
-use super::validated::{Campaign, Requirement};
+use super::validated::Campaign;
 use crate::reference::{AgentWalk, Reference, WaypointPath};
 use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
 
@@ -14,13 +16,23 @@ use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
 pub fn cautions(campaign: &Campaign) -> Vec<String> {
     let requirements = campaign.requirements.iter().enumerate();
     let unprovable = requirements.filter_map(|(index, own)| unprovable(campaign, index, own));
-    let faults = campaign.faults.iter().enumerate();
+    let groups = campaign.groups().iter().enumerate();
+    let of_groups = groups.flat_map(|(index, group)| {
+        let prefix = match campaign.has_named_groups() {
+            true => format!("group[{index}]."),
+            false => String::new(),
+        };
+        of_group(group).map(move |caution| prefix.clone() + &caution)
+    });
+    unprovable.chain(of_groups).collect()
+}
+
+/// What is said of a group of agents, each beginning with a key.
+fn of_group(group: &AgentGroup) -> impl Iterator<Item = String> {
+    let faults = group.faults.iter().enumerate();
     let unfinished =
         faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
-    unprovable
-        .chain(unreached(campaign))
-        .chain(unfinished)
-        .collect()
+    unreached(group).into_iter().chain(unfinished)
 }
 
 /// A requirement that does not hold even if nothing fails.
@@ -70,8 +82,8 @@ fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> O
 type Way = [f64; 3];
 
 /// The walk or path that moves longest beyond the end of an episode. Who only stands has arrived.
-fn unreached(campaign: &Campaign) -> Option<String> {
-    let (what, ways): (_, Vec<Way>) = match &campaign.reference {
+fn unreached(group: &AgentGroup) -> Option<String> {
+    let (what, ways): (_, Vec<Way>) = match &group.reference {
         Reference::Sinusoid(_) => return None,
         Reference::Waypoints(paths) => {
             let way = |path: &WaypointPath| [0.0, path.duration_s(), path.duration_s()];
@@ -87,9 +99,9 @@ fn unreached(campaign: &Campaign) -> Option<String> {
     };
     let ends = ways.iter().map(|[start_s, moves_s, _]| start_s + moves_s);
     let (agent, end_s) = ends.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let episode_s = campaign.time.shown_s(campaign.time.steps);
+    let episode_s = group.time.shown_s(group.time.steps);
     // A step is as near as an end can be met.
-    if end_s <= episode_s + campaign.time.step_s {
+    if end_s <= episode_s + group.time.step_s {
         return None;
     }
     let [start_s, _, takes_s] = ways[agent];

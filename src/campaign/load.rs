@@ -1,8 +1,10 @@
 //! From the text of a campaign file to a campaign.
 
 use super::check::Check;
+use super::common::Common;
 use super::error::CampaignError;
 use super::file::CampaignFile;
+use super::group::GroupParts;
 use super::overlay::Setting;
 use super::source::Source;
 use super::validate::validate;
@@ -38,6 +40,104 @@ impl Campaign {
     /// Refuses a campaign whose gains files are not there. A run's campaign is parsed again without this: its gains are
     /// in the run's own directory.
     fn require_files(&self) -> Result<(), CampaignError> {
+        self.groups()
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, group)| {
+                let prefix = match self.has_named_groups() {
+                    true => format!("group[{index}]."),
+                    false => String::new(),
+                };
+                group.require_files(&self.check(prefix))
+            })
+    }
+
+    /// Checks the text of a campaign file; `path` is for messages and for the files that it names.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
+        Self::parse_with(text, path, &[])
+    }
+
+    /// The same with settings laid over the text, one after the other.
+    ///
+    /// # Errors
+    /// As [`Campaign::load_with`].
+    pub fn parse_with(text: &str, path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
+        Self::parse_with_robots(text, path, overlay, &|_| None)
+    }
+
+    /// The same with the text of the robot's file of each group, by its name, where that is at hand and the file may
+    /// not be there.
+    ///
+    /// # Errors
+    /// As [`Campaign::load_with`].
+    pub fn parse_with_robots(
+        text: &str,
+        path: &Path,
+        overlay: &[Setting],
+        robots: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<Self, CampaignError> {
+        let source = Source {
+            path,
+            text,
+            overlay,
+        };
+        let root = ValueDeserializer::from(source.root()?);
+        let file = CampaignFile::deserialize(root).map_err(|error| source.syntax(error))?;
+        validate(file, source, robots)
+    }
+
+    /// The same with another number of episodes than the file's.
+    ///
+    /// # Errors
+    /// If the sampling design cannot divide so many into equal replicates.
+    pub fn with_episodes(self, episodes: u32) -> Result<Self, CampaignError> {
+        self.check(String::new())
+            .divides("--episodes", self.sampling, episodes)?;
+        Ok(self.with(|campaign| campaign.episodes = episodes))
+    }
+
+    /// The same with another seed than the file's.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        self.with(|campaign| campaign.seed = seed)
+    }
+
+    /// The JSON Schema of the campaign file.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(CampaignFile).to_value()
+    }
+}
+
+impl Common {
+    /// To refuse something after the campaign was read.
+    fn check(&self, prefix: String) -> Check<'_> {
+        let source = Source {
+            path: &self.path,
+            text: &self.text,
+            overlay: &self.overlay,
+        };
+        Check::new(source, prefix)
+    }
+
+    /// Refuses the value of a key after the campaign was read, where only gains or a device can tell.
+    pub(crate) fn invalid(
+        &self,
+        key: &str,
+        value: impl Display,
+        limit: &str,
+        remedy: &str,
+    ) -> CampaignError {
+        self.check(String::new()).invalid(key, value, limit, remedy)
+    }
+}
+
+impl GroupParts {
+    /// Refuses gains files that are not there.
+    fn require_files(&self, check: &Check<'_>) -> Result<(), CampaignError> {
         let own = self
             .synthesis
             .gains
@@ -50,7 +150,6 @@ impl Campaign {
                 &named.gains,
             )
         });
-        let check = self.check();
         match own.chain(of_named).find(|(_, path)| !path.is_file()) {
             Some((key, path)) => {
                 let limit = if path.is_dir() {
@@ -70,86 +169,5 @@ impl Campaign {
             }
             None => Ok(()),
         }
-    }
-
-    /// Checks the text of a campaign file; `path` is for messages and for the files that it names.
-    ///
-    /// # Errors
-    /// As [`Campaign::load`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, CampaignError> {
-        Self::parse_with(text, path, &[])
-    }
-
-    /// The same with settings laid over the text, one after the other.
-    ///
-    /// # Errors
-    /// As [`Campaign::load_with`].
-    pub fn parse_with(text: &str, path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
-        Self::parse_with_robot(text, path, overlay, None)
-    }
-
-    /// The same with the text of the robot's file, where that is at hand and the file may not be there.
-    ///
-    /// # Errors
-    /// As [`Campaign::load_with`].
-    pub fn parse_with_robot(
-        text: &str,
-        path: &Path,
-        overlay: &[Setting],
-        robot: Option<&str>,
-    ) -> Result<Self, CampaignError> {
-        let source = Source {
-            path,
-            text,
-            overlay,
-        };
-        let root = ValueDeserializer::from(source.root()?);
-        let file = CampaignFile::deserialize(root).map_err(|error| source.syntax(error))?;
-        validate(file, source, robot)
-    }
-
-    /// To refuse something after the campaign was read.
-    fn check(&self) -> Check<'_> {
-        Check {
-            source: Source {
-                path: &self.path,
-                text: &self.text,
-                overlay: &self.overlay,
-            },
-            channels: Vec::new(),
-        }
-    }
-
-    /// Refuses the value of a key after the campaign was read, where only gains or a device can tell.
-    pub(crate) fn invalid(
-        &self,
-        key: &str,
-        value: impl Display,
-        limit: &str,
-        remedy: &str,
-    ) -> CampaignError {
-        self.check().invalid(key, value, limit, remedy)
-    }
-
-    /// The same with another number of episodes than the file's.
-    ///
-    /// # Errors
-    /// If the sampling design cannot divide so many into equal replicates.
-    pub fn with_episodes(self, episodes: u32) -> Result<Self, CampaignError> {
-        self.check()
-            .divides("--episodes", self.sampling, episodes)?;
-        Ok(self.with(|campaign| campaign.episodes = episodes))
-    }
-
-    /// The same with another seed than the file's.
-    #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        self.with(|campaign| campaign.seed = seed)
-    }
-
-    /// The JSON Schema of the campaign file.
-    #[must_use]
-    pub fn schema() -> serde_json::Value {
-        schemars::schema_for!(CampaignFile).to_value()
     }
 }

@@ -1,10 +1,12 @@
 //! A campaign: everything that decides the result of a run, checked, in SI units, with nothing optional left.
 
 mod check;
+mod common;
 pub mod distribution;
 mod disturbances_and_faults;
 pub mod error;
 pub mod file;
+mod group;
 pub(crate) mod kinds;
 pub mod lints;
 mod load;
@@ -17,17 +19,18 @@ mod time;
 mod validate;
 mod validated;
 
+pub use common::{BUILT_IN, Common, FTC, PID, PID_TUNED, Requirement};
 pub use distribution::Distribution;
 pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
 pub use file::{CouplingCoordinates, IntegralKind, Link, ObserverStart};
+pub use group::{
+    AgentGroup, ChannelsOfCampaign, Control, GainSource, GroupParts, Initial, NamedGains, Verdict,
+};
 pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
 pub use overlay::{Setting, SettingError};
 pub use parameter::{Parameter, SamplingScope};
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
 pub use time::{Time, Timing};
-pub use validated::{
-    BUILT_IN, Campaign, Control, FTC, GainSource, Initial, NamedGains, PID, PID_TUNED, Requirement,
-    Validated, Verdict,
-};
+pub use validated::Campaign;

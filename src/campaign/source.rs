@@ -64,6 +64,14 @@ impl<'a> Source<'a> {
         syntax(self.path, &error, self.setting_at(place))
     }
 
+    /// A table that the file lacks.
+    pub(super) fn missing(&self, table: &str) -> CampaignError {
+        CampaignError::Syntax {
+            path: self.path.to_path_buf(),
+            message: format!("missing key or table `{table}`; add it"),
+        }
+    }
+
     /// The setting at a place behind the text.
     fn setting_at(&self, place: usize) -> Option<&'a Setting> {
         let mut all = self.settings();

@@ -114,7 +114,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     };
     let written = report.map_or(Ok(()), |report| report.write(&findings.manifest, &out));
     if arguments.json {
-        print_json(&terminal::findings_json(&findings))?;
+        print_json(&findings)?;
     } else if !arguments.quiet {
         print(&terminal::findings(&campaign, &findings, &out))?;
     }
@@ -244,7 +244,7 @@ fn devices_command(arguments: &DevicesArguments) -> Result<Code, Failure> {
 fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     let campaign = arguments.overrides.load()?;
     let shown = ProgressLine::of_work("synthesizing gains", arguments.quiet);
-    let gains = GainSet::synthesize_or_load(&campaign);
+    let gains = GainSet::of_groups(&campaign);
     drop(shown);
     let gains = gains?;
     if arguments.json {
@@ -261,11 +261,11 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
     };
     let campaign = Campaign::load_with(path, &arguments.set)?;
     let shown = ProgressLine::of_work("synthesizing gains", false);
-    let gains = GainSet::synthesize_or_load(&campaign);
+    let gains = GainSet::of_groups(&campaign);
     drop(shown);
     let gains = gains?;
     if arguments.json {
-        print_json(&gains.to_file(&campaign))?;
+        print_json(&GainSet::to_file(&campaign, &gains))?;
     } else {
         print(&terminal::gains(&campaign, &gains))?;
     }

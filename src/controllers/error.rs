@@ -9,24 +9,24 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum GainsError {
     /// The synthesis failed.
-    #[error("{}: synthesis of the {role} channels: {source}", path.display())]
+    #[error("{}: synthesis of the {channels} channels: {source}", path.display())]
     Synthesis {
         /// The campaign file.
         path: PathBuf,
         /// The channels.
-        role: &'static str,
+        channels: String,
         /// Why.
         source: Box<SynthesisError>,
     },
     /// Gains from a file do not pass the verification.
-    #[error("{}: controllers.{controller}.{role}: {source}", path.display())]
+    #[error("{}: controllers.{controller}.{channels}: {source}", path.display())]
     Refused {
         /// The gains file.
         path: PathBuf,
         /// The controller in the file.
         controller: String,
         /// The channels.
-        role: &'static str,
+        channels: String,
         /// Why.
         source: Box<SynthesisError>,
     },

@@ -3,7 +3,7 @@
 use super::error::GainsError;
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
 use crate::agent::{ChannelGroup, ChannelRole};
-use crate::campaign::Campaign;
+use crate::campaign::{AgentGroup, Campaign};
 use crate::synthesis::{ChannelDesign, ControllerGains, SynthesisError, verify};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,6 +21,21 @@ pub struct GainsFile {
     /// Where the numbers are from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+    /// The designs that the gains belong to; not read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub designs: Option<serde_json::Value>,
+    /// The controllers by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub controllers: BTreeMap<String, ControllerFile>,
+    /// Of a campaign with `[[group]]`, designs and controllers of each group of agents by its name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub groups: BTreeMap<String, GroupGains>,
+}
+
+/// The gains of one group of agents in a gains.json.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupGains {
     /// The designs that the gains belong to; not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub designs: Option<serde_json::Value>,
@@ -60,33 +75,48 @@ impl ControllerFile {
     }
 }
 
-/// The gains of a campaign as a file.
-pub(super) fn of(gains: &GainSet, campaign: &Campaign) -> GainsFile {
-    let groups = campaign.channel_groups();
-    let by_group = |values: Vec<serde_json::Value>| {
-        let names = groups.iter().map(|group| group.role.name().to_string());
+/// The gains of a campaign, a set of each group of agents, as a file.
+pub(super) fn of(gains: &[GainSet], campaign: &Campaign) -> GainsFile {
+    let mut file = GainsFile {
+        format: FORMAT,
+        source: None,
+        designs: None,
+        controllers: BTreeMap::new(),
+        groups: BTreeMap::new(),
+    };
+    for (group, gains) in campaign.groups().iter().zip(gains) {
+        let own = of_group(gains, group);
+        if group.name.is_empty() {
+            (file.designs, file.controllers) = (own.designs, own.controllers);
+        } else {
+            file.groups.insert(group.name.to_string(), own);
+        }
+    }
+    file
+}
+
+fn of_group(gains: &GainSet, group: &AgentGroup) -> GroupGains {
+    let channels = group.channel_groups();
+    let by_role = |values: Vec<serde_json::Value>| {
+        let names = channels.iter().map(|own| own.role.name().to_string());
         serde_json::Value::Object(names.zip(values).collect())
     };
     let controllers = gains.controllers.iter().map(|controller| {
-        let findings = controller.groups.iter().map(|group| json(&group.findings));
+        let findings = controller.groups.iter().map(|own| json(&own.findings));
         let mut file = ControllerFile {
             source: Some(controller.source.clone()),
             position: None,
             attitude: None,
             joints: None,
-            findings: Some(by_group(findings.collect())),
+            findings: Some(by_role(findings.collect())),
         };
-        for (group, own) in groups.iter().zip(&controller.groups) {
-            *file.of(group.role) = Some(own.gains.clone());
+        for (of, own) in channels.iter().zip(&controller.groups) {
+            *file.of(of.role) = Some(own.gains.clone());
         }
         (controller.name.clone(), file)
     });
-    GainsFile {
-        format: FORMAT,
-        source: None,
-        designs: Some(by_group(
-            campaign.synthesis.designs.iter().map(json).collect(),
-        )),
+    GroupGains {
+        designs: Some(by_role(group.synthesis.designs.iter().map(json).collect())),
         controllers: controllers.collect(),
     }
 }
@@ -124,37 +154,45 @@ fn broken(path: &Path, reason: String) -> GainsError {
     }
 }
 
-/// A controller from a file; its gains are verified if `check`.
+/// A controller of a group of agents from a file; its gains are verified if `check`.
 pub(super) fn controller(
-    campaign: &Campaign,
+    group: &AgentGroup,
     name: &str,
     path: &Path,
     controller: &str,
     check: bool,
 ) -> Result<SimulatedController, GainsError> {
     let mut file = read(path)?;
-    let Some(mut found) = file.controllers.remove(controller) else {
-        let known: Vec<&str> = file.controllers.keys().map(String::as_str).collect();
-        let reason = format!(
-            "controllers.{controller}: absent, the file has {}; add it or name one of these",
-            known.join(", ")
-        );
+    let of_group = file.groups.remove(&*group.name);
+    let mut controllers = of_group.map_or(file.controllers, |own| own.controllers);
+    let Some(mut found) = controllers.remove(controller) else {
+        let known: Vec<&str> = controllers.keys().map(String::as_str).collect();
+        let reason = match known.as_slice() {
+            [] => format!(
+                "controllers.{controller}: absent, the file has gains of the groups {} only; name the group so",
+                file.groups.keys().cloned().collect::<Vec<_>>().join(", ")
+            ),
+            known => format!(
+                "controllers.{controller}: absent, the file has {}; add it or name one of these",
+                known.join(", ")
+            ),
+        };
         return Err(broken(path, reason));
     };
     let written = found.findings.take();
-    let mut of_group = |(group, design): (ChannelGroup, &ChannelDesign)| {
-        let role = group.role.name();
-        let gains = found.of(group.role).take().ok_or_else(|| {
+    let mut of_channels = |(channels, design): (ChannelGroup, &ChannelDesign)| {
+        let role = channels.role.name();
+        let gains = found.of(channels.role).take().ok_or_else(|| {
             let reason = format!(
                 "controllers.{controller}.{role}: absent; add it, or name gains that were made for {}",
-                campaign.agent.plural()
+                group.agent.plural()
             );
             broken(path, reason)
         })?;
         let refused = |source| GainsError::Refused {
             path: path.to_path_buf(),
             controller: controller.to_string(),
-            role,
+            channels: role.to_string(),
             source: Box::new(source),
         };
         let loop_gains = integrable(design, &gains).map_err(refused)?;
@@ -171,12 +209,12 @@ pub(super) fn controller(
             findings,
         })
     };
-    let groups = campaign.channel_groups().into_iter();
-    let groups: Vec<ChannelController> = groups
-        .zip(&campaign.synthesis.designs)
-        .map(&mut of_group)
+    let channels = group.channel_groups().into_iter();
+    let groups: Vec<ChannelController> = channels
+        .zip(&group.synthesis.designs)
+        .map(&mut of_channels)
         .collect::<Result<_, _>>()?;
-    let states = |group: &ChannelController| group.loop_gains.states;
+    let states = |own: &ChannelController| own.loop_gains.states;
     if groups
         .windows(2)
         .any(|pair| states(&pair[0]) != states(&pair[1]))

@@ -6,7 +6,7 @@ use crate::synthesis::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The controllers of a campaign, in its order.
+/// The controllers of a campaign with their gains for one group of agents, in the campaign's order.
 #[derive(Debug, Clone)]
 pub struct GainSet {
     /// The controllers.
@@ -20,7 +20,7 @@ pub struct SimulatedController {
     pub name: String,
     /// Whose gains they are: "synthesized", or a file and the name there.
     pub source: String,
-    /// Gains on each channel group of the campaign, in their order.
+    /// Gains on each channel group of the agents, in their order.
     pub groups: Vec<ChannelController>,
 }
 
@@ -68,6 +68,12 @@ pub struct Findings {
 }
 
 impl GainSet {
+    /// The gains of each group as the episode loop takes them, `[group][controller][channel group]`.
+    #[must_use]
+    pub fn loops_of(groups: &[Self]) -> Vec<Vec<Vec<LoopGains>>> {
+        groups.iter().map(Self::loops).collect()
+    }
+
     /// The gains as the episode loop takes them, `[controller][channel group]`.
     #[must_use]
     pub fn loops(&self) -> Vec<Vec<LoopGains>> {

@@ -5,90 +5,104 @@ use super::file::{self, GainsFile};
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
 use super::step::check_step;
 use crate::agent::ChannelGroup;
-use crate::campaign::{BUILT_IN, Campaign, PID, PID_TUNED};
-use crate::synthesis::{ChannelSynthesis, ControllerGains, LoopAnalysis, synthesize};
+use crate::campaign::{AgentGroup, BUILT_IN, Campaign, PID, PID_TUNED};
+use crate::synthesis::{
+    ChannelSynthesis, ControllerGains, LoopAnalysis, SynthesisError, synthesize,
+};
 use std::path::Path;
 
 impl GainSet {
-    /// Synthesizes, reads and verifies the gains of a campaign's controllers, and checks its step against them.
+    /// Synthesizes, reads and verifies the gains of a campaign's controllers, a set of each group of agents.
+    ///
+    /// # Errors
+    /// As [`GainSet::synthesize_or_load`].
+    pub fn of_groups(campaign: &Campaign) -> Result<Vec<Self>, GainsError> {
+        campaign
+            .groups()
+            .iter()
+            .map(Self::synthesize_or_load)
+            .collect()
+    }
+
+    /// Synthesizes, reads and verifies the gains of the controllers of a group of agents, and checks its step against
+    /// them.
     ///
     /// # Errors
     /// If a synthesis fails, a file is unreadable or refused, or the step is too long for the gains.
-    pub fn synthesize_or_load(campaign: &Campaign) -> Result<Self, GainsError> {
-        let source = &campaign.synthesis;
+    pub fn synthesize_or_load(group: &AgentGroup) -> Result<Self, GainsError> {
+        let source = &group.synthesis;
         let is_built_in = |name: &String| BUILT_IN.contains(&name.as_str());
-        let synthesized = if source.gains.is_none() && campaign.controllers.iter().any(is_built_in)
-        {
-            Some(synthesize_groups(campaign)?)
+        let synthesized = if source.gains.is_none() && group.controllers.iter().any(is_built_in) {
+            Some(synthesize_groups(group)?)
         } else {
             None
         };
         let mut controllers = Vec::new();
-        for name in &campaign.controllers {
+        for name in &group.controllers {
             let named = source.named.iter().find(|named| named.name == *name);
             let file = named
                 .map(|named| (&named.gains, &named.controller))
                 .or(source.gains.as_ref().map(|path| (path, name)));
             controllers.push(match (file, &synthesized) {
                 (Some((path, controller)), _) => {
-                    file::controller(campaign, name, path, controller, true)?
+                    file::controller(group, name, path, controller, true)?
                 }
-                (None, Some(synthesized)) => from_synthesis(campaign, name, synthesized)?,
+                (None, Some(synthesized)) => from_synthesis(group, name, synthesized)?,
                 (None, None) => {
                     let reason = format!("no gains for the controller {name:?}");
                     return Err(GainsError::File {
-                        path: campaign.path.clone(),
+                        path: group.path.clone(),
                         reason,
                     });
                 }
             });
         }
         let set = Self { controllers };
-        check_step(&set, campaign)?;
+        check_step(&set, group)?;
         Ok(set)
     }
 
-    /// Reads the gains of a run back; they were verified when it was simulated.
+    /// Reads the gains of a run back, a set of each group of agents; they were verified when it was simulated.
     ///
     /// # Errors
     /// If the file is unreadable or lacks a controller.
-    pub fn read(campaign: &Campaign, path: &Path) -> Result<Self, GainsError> {
-        let read = |name: &String| file::controller(campaign, name, path, name, false);
-        Ok(Self {
-            controllers: campaign
-                .controllers
-                .iter()
-                .map(read)
-                .collect::<Result<_, _>>()?,
-        })
+    pub fn read(campaign: &Campaign, path: &Path) -> Result<Vec<Self>, GainsError> {
+        let of_group = |group: &AgentGroup| {
+            let read = |name: &String| file::controller(group, name, path, name, false);
+            let controllers = group.controllers.iter().map(read);
+            Ok(Self {
+                controllers: controllers.collect::<Result<_, _>>()?,
+            })
+        };
+        campaign.groups().iter().map(of_group).collect()
     }
 
-    /// The gains as a file.
+    /// The gains of a campaign, a set of each group of agents, as a file.
     #[must_use]
-    pub fn to_file(&self, campaign: &Campaign) -> GainsFile {
-        file::of(self, campaign)
+    pub fn to_file(campaign: &Campaign, gains: &[Self]) -> GainsFile {
+        file::of(gains, campaign)
     }
 }
 
 /// The gains of each channel group; equal designs are synthesized once.
-fn synthesize_groups(campaign: &Campaign) -> Result<Vec<ChannelSynthesis>, GainsError> {
+fn synthesize_groups(group: &AgentGroup) -> Result<Vec<ChannelSynthesis>, GainsError> {
     let mut done: Vec<ChannelSynthesis> = Vec::new();
-    for (group, design) in campaign
-        .channel_groups()
-        .iter()
-        .zip(&campaign.synthesis.designs)
-    {
+    for (channels, design) in group.channel_groups().iter().zip(&group.synthesis.designs) {
         let known = done.iter().find(|known| known.design == *design).cloned();
         done.push(match known {
             Some(known) => known,
-            None => synthesize(design).map_err(|source| GainsError::Synthesis {
-                path: campaign.path.clone(),
-                role: group.role.name(),
-                source: Box::new(source),
-            })?,
+            None => synthesize(design).map_err(|source| failed(group, channels, source))?,
         });
     }
     Ok(done)
+}
+
+fn failed(group: &AgentGroup, channels: &ChannelGroup, source: SynthesisError) -> GainsError {
+    GainsError::Synthesis {
+        path: group.path.clone(),
+        channels: group.titled(channels.role.name()),
+        source: Box::new(source),
+    }
 }
 
 /// The gains of a built-in controller in a synthesis, and what was found about them.
@@ -120,28 +134,23 @@ pub fn built_in<'a>(
 }
 
 fn from_synthesis(
-    campaign: &Campaign,
+    group: &AgentGroup,
     name: &str,
     synthesized: &[ChannelSynthesis],
 ) -> Result<SimulatedController, GainsError> {
-    let of_group = |(group, synthesis): (ChannelGroup, &ChannelSynthesis)| {
+    let of_channels = |(channels, synthesis): (ChannelGroup, &ChannelSynthesis)| {
         let (gains, findings) = built_in(synthesis, name);
-        let loop_gains =
-            integrable(&synthesis.design, gains).map_err(|source| GainsError::Synthesis {
-                path: campaign.path.clone(),
-                role: group.role.name(),
-                source: Box::new(source),
-            })?;
+        let loop_gains = integrable(&synthesis.design, gains);
         Ok::<_, GainsError>(ChannelController {
             gains: gains.clone(),
-            loop_gains,
+            loop_gains: loop_gains.map_err(|source| failed(group, &channels, source))?,
             findings: Some(findings),
         })
     };
-    let groups = campaign.channel_groups().into_iter().zip(synthesized);
+    let groups = group.channel_groups().into_iter().zip(synthesized);
     Ok(SimulatedController {
         name: name.to_string(),
         source: "synthesized".into(),
-        groups: groups.map(of_group).collect::<Result<_, _>>()?,
+        groups: groups.map(of_channels).collect::<Result<_, _>>()?,
     })
 }

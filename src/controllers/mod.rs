@@ -8,6 +8,6 @@ mod load;
 mod step;
 
 pub use error::GainsError;
-pub use file::{ControllerFile, GainsFile};
+pub use file::{ControllerFile, GainsFile, GroupGains};
 pub use gain_set::{ChannelController, Findings, GainSet, SimulatedController};
 pub use load::built_in;

@@ -2,13 +2,13 @@
 
 use super::gain_set::GainSet;
 use crate::agent::{ActuationKind, Agent};
-use crate::campaign::{Campaign, CampaignError, RandomQuantity};
+use crate::campaign::{AgentGroup, CampaignError, RandomQuantity};
 use crate::synthesis::poles;
 use nalgebra::Complex;
 
 /// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
-pub(super) fn check_step(gains: &GainSet, campaign: &Campaign) -> Result<(), CampaignError> {
-    let step_s = campaign.time.step_s;
+pub(super) fn check_step(gains: &GainSet, group: &AgentGroup) -> Result<(), CampaignError> {
+    let step_s = group.time.step_s;
     let of_controllers = gains.controllers.iter().flat_map(|controller| {
         let poles = controller
             .groups
@@ -16,7 +16,7 @@ pub(super) fn check_step(gains: &GainSet, campaign: &Campaign) -> Result<(), Cam
             .flat_map(|channel| poles(&channel.loop_gains));
         poles.map(move |pole| (pole, format!("{:?}", controller.name)))
     });
-    let of_plant = plant_poles(campaign)
+    let of_plant = plant_poles(group)
         .into_iter()
         .map(|(pole, of)| (Complex::new(pole, 0.0), of.to_string()));
     let worst = of_controllers
@@ -30,15 +30,15 @@ pub(super) fn check_step(gains: &GainSet, campaign: &Campaign) -> Result<(), Cam
                 pole.re, pole.im
             );
             let remedy = format!("use {:.1e} or less", limit_s / 2.0);
-            Err(campaign.invalid("time.step_s", step_s, &limit, &remedy))
+            Err(group.invalid("time.step_s", step_s, &limit, &remedy))
         }
         _ => Ok(()),
     }
 }
 
 /// The poles of what is not a controller: a UAV's damping at its lightest, and its command filter.
-fn plant_poles(campaign: &Campaign) -> Vec<(f64, &'static str)> {
-    let Agent::Uav(uav) = &campaign.agent else {
+fn plant_poles(group: &AgentGroup) -> Vec<(f64, &'static str)> {
+    let Agent::Uav(uav) = &group.agent else {
         return Vec::new();
     };
     let least = |scale: &RandomQuantity| {
@@ -55,11 +55,11 @@ fn plant_poles(campaign: &Campaign) -> Vec<(f64, &'static str)> {
     };
     vec![
         (
-            -uav.drag_n_s_m / (uav.mass_kg * least(&campaign.mass_scale)),
+            -uav.drag_n_s_m / (uav.mass_kg * least(&group.mass_scale)),
             "the drag",
         ),
         (
-            -uav.angular_drag_n_m_s / (smallest_inertia * least(&campaign.inertia_scale)),
+            -uav.angular_drag_n_m_s / (smallest_inertia * least(&group.inertia_scale)),
             "the angular drag",
         ),
         (filter, "the command filter"),

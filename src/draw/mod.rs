@@ -4,13 +4,13 @@
 pub mod quantities;
 
 use crate::campaign::{
-    Campaign, FaultChannels, Parameter, RandomQuantity, Sampling, SamplingScope, Stratum,
+    AgentGroup, FaultChannels, Parameter, RandomQuantity, Sampling, SamplingScope, Stratum,
     StratumFaults, Time, Timing,
 };
 use crate::random::philox::{Address, Stream};
 use crate::random::{MOST_ENTRIES, latin_hypercube, sobol};
 
-/// Everything random about an episode.
+/// Everything random about an episode of a group of agents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Episode {
     /// Index of the episode.
@@ -69,19 +69,19 @@ pub struct AppliedEpisode {
 impl Episode {
     /// The draws as they act.
     #[must_use]
-    pub fn applied(&self, campaign: &Campaign) -> AppliedEpisode {
+    pub fn applied(&self, group: &AgentGroup) -> AppliedEpisode {
         let agents = self.agents.iter();
         AppliedEpisode {
             index: self.index,
-            agents: agents.map(|draw| draw.applied(campaign)).collect(),
+            agents: agents.map(|draw| draw.applied(group)).collect(),
         }
     }
 }
 
 impl AgentDraw {
     /// The same draw with every time rounded to whole steps, as it takes effect.
-    fn applied(&self, campaign: &Campaign) -> Self {
-        let time = campaign.time;
+    fn applied(&self, group: &AgentGroup) -> Self {
+        let time = group.time;
         let round = |parameters: &[Parameter], values: &mut [Vec<f64>]| {
             for (parameter, values) in parameters.iter().zip(values) {
                 for value in values {
@@ -90,13 +90,13 @@ impl AgentDraw {
             }
         };
         let mut applied = self.clone();
-        if campaign.control.delay_s.is_some() {
+        if group.control.delay_s.is_some() {
             applied.control_delay_s = time.applied(Timing::Length, self.control_delay_s);
         }
-        for (disturbance, values) in campaign.disturbances.iter().zip(&mut applied.disturbances) {
+        for (disturbance, values) in group.disturbances.iter().zip(&mut applied.disturbances) {
             round(disturbance.kind.parameters(), values);
         }
-        for (fault, draw) in campaign.faults.iter().zip(&mut applied.faults) {
+        for (fault, draw) in group.faults.iter().zip(&mut applied.faults) {
             draw.onset_s = time.applied(Timing::Onset, draw.onset_s);
             draw.duration_s = time.applied(Timing::Length, draw.duration_s);
             // A ramp of less than half a step is none: the fault is complete at once.
@@ -155,21 +155,23 @@ const FIRST_PARAMETER: u32 = 3;
 const DURATION: u32 = 100;
 const RAMP: u32 = 101;
 
-/// Draws an episode of a campaign.
+/// Draws an episode of a group of agents.
 #[must_use]
-pub fn draw(campaign: &Campaign, episode: u32) -> Episode {
+pub fn draw(group: &AgentGroup, episode: u32) -> Episode {
     let draws = Draws {
-        seed: campaign.seed,
+        seed: group.seed,
         episode,
-        channels: campaign.channels().len(),
-        stratum: campaign.strata.of(episode),
-        sampling: campaign.sampling,
-        episodes: campaign.episodes,
+        channels: group.channels().len(),
+        first_agent: group.first_agent,
+        first_fault: group.first_fault,
+        stratum: group.strata.of(episode),
+        sampling: group.sampling,
+        episodes: group.episodes,
     };
     Episode {
         index: episode,
-        agents: (0..campaign.team)
-            .map(|agent| draws.agent(campaign, agent))
+        agents: (0..group.team)
+            .map(|agent| draws.agent(group, agent))
             .collect(),
     }
 }
@@ -178,6 +180,9 @@ struct Draws<'a> {
     seed: u64,
     episode: u32,
     channels: usize,
+    /// The numbers in the campaign of the group's first agent and fault.
+    first_agent: usize,
+    first_fault: usize,
     stratum: Option<&'a Stratum>,
     sampling: Sampling,
     /// Episodes of the campaign: hypercubes belong to their size.
@@ -185,23 +190,23 @@ struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    fn agent(&self, campaign: &Campaign, agent: usize) -> AgentDraw {
+    fn agent(&self, group: &AgentGroup, agent: usize) -> AgentDraw {
         let initial = |quantity: Quantity, drawn: &RandomQuantity| {
             self.values(Stream::Initial, quantity as u32, 0, drawn, agent)
         };
         AgentDraw {
-            mass_scale: initial(Quantity::MassScale, &campaign.mass_scale)[0],
-            inertia_scale: initial(Quantity::InertiaScale, &campaign.inertia_scale)[0],
-            kappa: initial(Quantity::Kappa, &campaign.kappa)[0],
-            control_delay_s: match &campaign.control.delay_s {
+            mass_scale: initial(Quantity::MassScale, &group.mass_scale)[0],
+            inertia_scale: initial(Quantity::InertiaScale, &group.inertia_scale)[0],
+            kappa: initial(Quantity::Kappa, &group.kappa)[0],
+            control_delay_s: match &group.control.delay_s {
                 Some(delay_s) => initial(Quantity::ControlDelay, delay_s)[0],
                 None => 0.0,
             },
-            error: initial(Quantity::Error, &campaign.initial.error),
-            error_rate: initial(Quantity::ErrorRate, &campaign.initial.error_rate),
-            error_integral: initial(Quantity::ErrorIntegral, &campaign.initial.error_integral),
+            error: initial(Quantity::Error, &group.initial.error),
+            error_rate: initial(Quantity::ErrorRate, &group.initial.error_rate),
+            error_integral: initial(Quantity::ErrorIntegral, &group.initial.error_integral),
             disturbances: (0u32..)
-                .zip(&campaign.disturbances)
+                .zip(&group.disturbances)
                 .map(|(entry, disturbance)| {
                     self.parameters(
                         Stream::Disturbance,
@@ -213,7 +218,7 @@ impl Draws<'_> {
                 })
                 .collect(),
             faults: (0u32..)
-                .zip(&campaign.faults)
+                .zip(&group.faults)
                 .map(|(entry, fault)| self.fault(fault, entry, agent))
                 .collect(),
         }
@@ -223,7 +228,8 @@ impl Draws<'_> {
         let unit = |index| self.unit(Stream::Fault, entry, index, SamplingScope::Agent, agent, 0);
         let occurs = match self.stratum.map(|stratum| &stratum.faults) {
             Some(StratumFaults::Certain(faults)) if !fault.background => {
-                faults.contains(&(entry as usize)) && fault.probability[agent] > 0.0
+                faults.contains(&(self.first_fault + entry as usize))
+                    && fault.probability[agent] > 0.0
             }
             _ => unit(OCCURRENCE) < fault.probability[agent],
         };
@@ -302,9 +308,9 @@ impl Draws<'_> {
         channel: usize,
     ) -> f64 {
         let member = match per {
-            SamplingScope::Episode => 0,
-            SamplingScope::Agent => member(agent, 0),
-            SamplingScope::Channel => member(agent, channel),
+            SamplingScope::Episode => member(self.first_agent, 0),
+            SamplingScope::Agent => member(self.first_agent + agent, 0),
+            SamplingScope::Channel => member(self.first_agent + agent, channel),
         };
         let address = Address {
             episode: self.episode,
@@ -360,7 +366,7 @@ fn dimension(address: Address) -> u32 {
 /// Addresses that an agent has: more than any robot has channels.
 pub(crate) const MEMBERS_PER_AGENT: usize = 64;
 
-/// An agent's channel as an address.
+/// A channel as an address; agents are numbered through all groups of a campaign.
 #[must_use]
 #[expect(
     clippy::cast_possible_truncation,

@@ -1,8 +1,11 @@
 //! The quantities that a campaign draws: the one list that tables, rankings, `check` and pages go through.
+//!
+//! Disturbances and faults are numbered through all groups of a campaign in the keys of the tables, and within their
+//! group everywhere else.
 
 use super::{AgentDraw, AppliedEpisode};
 use crate::agent::Agent;
-use crate::campaign::{Campaign, DisturbanceKind};
+use crate::campaign::{AgentGroup, Campaign, DisturbanceKind};
 use crate::statistics::root_mean_square;
 
 /// What a quantity belongs to.
@@ -14,9 +17,9 @@ pub enum Source {
     Control,
     /// The start of an episode.
     Initial,
-    /// A disturbance, by its place in the campaign.
+    /// A disturbance, by its place in the group.
     Disturbance(usize, DisturbanceKind),
-    /// A fault, by its place in the campaign.
+    /// A fault, by its place in the group.
     Fault(usize),
 }
 
@@ -49,28 +52,29 @@ enum Place {
     Parameter(usize),
 }
 
-/// All quantities of a campaign, in the order of the tables.
+/// All quantities of a group of agents, in the order of the tables.
 #[must_use]
-pub fn quantities(campaign: &Campaign) -> Vec<Quantity> {
-    let mut all = vec![Quantity::new(Source::Agent, "mass_scale", Place::MassScale)];
-    let mut add = |source, name, place| all.push(Quantity::new(source, name, place));
-    if let Agent::Uav(_) = campaign.agent {
+pub fn quantities(group: &AgentGroup) -> Vec<Quantity> {
+    let mut all = Vec::new();
+    let mut add = |source, name, place| all.push(Quantity::new(group, source, name, place));
+    add(Source::Agent, "mass_scale", Place::MassScale);
+    if let Agent::Uav(_) = group.agent {
         add(Source::Agent, "inertia_scale", Place::InertiaScale);
     }
     add(Source::Agent, "kappa", Place::Kappa);
-    if campaign.control.delay_s.is_some() {
+    if group.control.delay_s.is_some() {
         add(Source::Control, "delay_s", Place::ControlDelay);
     }
     add(Source::Initial, "error", Place::Error);
     add(Source::Initial, "error_rate", Place::ErrorRate);
     add(Source::Initial, "error_integral", Place::ErrorIntegral);
-    for (index, disturbance) in campaign.disturbances.iter().enumerate() {
+    for (index, disturbance) in group.disturbances.iter().enumerate() {
         let source = Source::Disturbance(index, disturbance.kind);
         for (k, parameter) in disturbance.kind.parameters().iter().enumerate() {
             add(source, parameter.name, Place::Parameter(k));
         }
     }
-    for (index, fault) in campaign.faults.iter().enumerate() {
+    for (index, fault) in group.faults.iter().enumerate() {
         let source = Source::Fault(index);
         add(source, "onset_s", Place::Onset);
         if fault.duration_s.is_some() {
@@ -87,13 +91,15 @@ pub fn quantities(campaign: &Campaign) -> Vec<Quantity> {
 }
 
 impl Quantity {
-    fn new(source: Source, name: &'static str, place: Place) -> Self {
+    fn new(group: &AgentGroup, source: Source, name: &'static str, place: Place) -> Self {
         let key = match source {
             Source::Agent => name.to_string(),
             Source::Control => format!("control_{name}"),
             Source::Initial => format!("initial_{name}"),
-            Source::Disturbance(index, _) => format!("disturbance{index}_{name}"),
-            Source::Fault(index) => format!("fault{index}_{name}"),
+            Source::Disturbance(index, _) => {
+                format!("disturbance{}_{name}", group.first_disturbance + index)
+            }
+            Source::Fault(index) => format!("fault{}_{name}", group.first_fault + index),
         };
         Self {
             source,
@@ -173,8 +179,11 @@ impl Quantity {
 /// square over the team: for errors and biases, whose sign does not matter, the size; for all others nearly the mean.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
-    /// Its name in tables: that of its quantity, or `fault0_agents`.
+    /// Its name in tables: that of its quantity, with the name of its group in front where that has one; or
+    /// `fault0_agents`.
     pub key: String,
+    /// The group of agents whose it is, by index.
+    group: usize,
     measure: Measure,
 }
 
@@ -189,32 +198,50 @@ enum Measure {
     Agents(usize),
 }
 
-/// The conditions of a campaign's episodes.
+/// The conditions of a campaign's episodes, group by group.
 #[must_use]
 pub fn conditions(campaign: &Campaign) -> Vec<Condition> {
+    let groups = campaign.groups().iter().enumerate();
+    groups
+        .flat_map(|(index, group)| conditions_of(index, group))
+        .collect()
+}
+
+fn conditions_of(index: usize, group: &AgentGroup) -> Vec<Condition> {
     let mut all = Vec::new();
-    for quantity in quantities(campaign) {
-        let key = quantity.key.clone();
-        let measure = match (quantity.source, quantity.place) {
-            (Source::Fault(index), Place::Onset) => {
-                all.push(Condition {
-                    key: format!("fault{index}_agents"),
-                    measure: Measure::Agents(index),
-                });
-                Measure::Earliest(quantity)
+    let mut add = |key, measure| {
+        all.push(Condition {
+            key,
+            group: index,
+            measure,
+        });
+    };
+    for quantity in quantities(group) {
+        match (quantity.source, quantity.place) {
+            (Source::Fault(fault), Place::Onset) => {
+                let number = group.first_fault + fault;
+                add(format!("fault{number}_agents"), Measure::Agents(fault));
+                add(quantity.key.clone(), Measure::Earliest(quantity));
             }
-            _ => Measure::Size(quantity),
-        };
-        all.push(Condition { key, measure });
+            // Their keys have numbers of the campaign.
+            (Source::Fault(_) | Source::Disturbance(..), _) => {
+                add(quantity.key.clone(), Measure::Size(quantity));
+            }
+            (Source::Agent | Source::Control | Source::Initial, _) => {
+                let key = group.titled(&quantity.key).replace(' ', "_");
+                add(key, Measure::Size(quantity));
+            }
+        }
     }
     all
 }
 
 impl Condition {
-    /// The condition in an episode; none where it does not apply, as the magnitude of a fault that nobody has.
+    /// The condition in an episode, of which each group's draws are given; none where it does not apply, as the
+    /// magnitude of a fault that nobody has.
     #[must_use]
-    pub fn of(&self, episode: &AppliedEpisode) -> Option<f64> {
-        let agents = episode.agents.iter();
+    pub fn of(&self, groups: &[AppliedEpisode]) -> Option<f64> {
+        let agents = groups[self.group].agents.iter();
         match &self.measure {
             Measure::Agents(index) => {
                 let having = agents.filter(|draw| draw.faults[*index].occurs());
@@ -238,7 +265,7 @@ impl Condition {
     }
 }
 
-/// The fault that a condition is about, and the rest of the condition's name.
+/// The fault that a condition is about, by its number in the campaign, and the rest of the condition's name.
 #[must_use]
 pub fn fault_of(condition: &str) -> Option<(usize, &str)> {
     let (index, rest) = condition.strip_prefix("fault")?.split_once('_')?;
@@ -248,24 +275,36 @@ pub fn fault_of(condition: &str) -> Option<(usize, &str)> {
 /// A condition in the words of the campaign: with the name of its fault, or the kind of its disturbance.
 #[must_use]
 pub fn title(campaign: &Campaign, condition: &str) -> String {
-    let of_fault = fault_of(condition)
-        .and_then(|(index, rest)| Some(format!("{} {rest}", campaign.faults.get(index)?.name)));
-    of_fault
+    let of_fault = || {
+        let (index, rest) = fault_of(condition)?;
+        let (group, fault) = campaign.faults().nth(index)?;
+        Some(group.titled(&format!("{} {rest}", fault.name)))
+    };
+    let of_group = || {
+        let mut groups = campaign.groups().iter();
+        groups.find_map(|group| {
+            let rest = condition.strip_prefix(&*group.name)?.strip_prefix('_')?;
+            (!group.name.is_empty()).then(|| group.titled(rest))
+        })
+    };
+    of_fault()
         .or_else(|| disturbance_title(campaign, condition))
+        .or_else(of_group)
         .unwrap_or_else(|| condition.to_string())
 }
 
 fn disturbance_title(campaign: &Campaign, condition: &str) -> Option<String> {
     let (index, rest) = condition.strip_prefix("disturbance")?.split_once('_')?;
-    let kind = campaign
-        .disturbances
-        .get(index.parse::<usize>().ok()?)?
-        .kind;
-    let alike = campaign.disturbances.iter().filter(|own| own.kind == kind);
+    let index: usize = index.parse().ok()?;
+    let mut groups = campaign.groups().iter().rev();
+    let group = groups.find(|group| group.first_disturbance <= index)?;
+    let place = index - group.first_disturbance;
+    let kind = group.disturbances.get(place)?.kind;
+    let alike = group.disturbances.iter().filter(|own| own.kind == kind);
     // Two of a kind are told apart by their places in the file.
     let place = match alike.count() {
         1 => String::new(),
-        _ => format!(" [{index}]"),
+        _ => format!(" [{place}]"),
     };
-    Some(format!("{}{place} {rest}", kind.name()))
+    Some(group.titled(&format!("{}{place} {rest}", kind.name())))
 }

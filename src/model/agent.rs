@@ -15,7 +15,7 @@ use super::lanes::Lane;
 use super::metric::{Limits, Metrics, Sample};
 use super::plant::{Inputs, Plant, ReferenceRow, Response};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
-use crate::campaign::{Campaign, CouplingCoordinates};
+use crate::campaign::{AgentGroup, CouplingCoordinates};
 
 /// Constants of a group: plant, controller and limits of its channels.
 pub(crate) struct GroupParameters<'t, P, C, R, const NC: usize> {
@@ -46,9 +46,9 @@ pub(crate) enum Coupling {
 
 impl Coupling {
     /// That of a campaign.
-    pub(crate) fn of(campaign: &Campaign) -> Self {
-        match campaign.coordinates {
-            _ if !campaign.is_coupled() => Self::None,
+    pub(crate) fn of(group: &AgentGroup) -> Self {
+        match group.coordinates {
+            _ if !group.is_coupled() => Self::None,
             CouplingCoordinates::Absolute => Self::Absolute,
             CouplingCoordinates::Centroid => Self::Centroid,
         }

@@ -18,12 +18,12 @@ use super::plant::kinds::AnyPlant;
 use super::sample::{ChannelSample, ObserverState};
 use super::subsystem::{Subsystem, parts};
 use super::team::{Advance, Ending, Show, TeamState};
-use crate::campaign::{Campaign, IntegralKind, ObserverStart};
+use crate::campaign::{AgentGroup, IntegralKind, ObserverStart};
 use crate::draw::Episode;
 
-/// The episode loop of a campaign in one precision: what all its episodes and controllers share.
+/// The episode loop of a group of agents in one precision: what all its episodes and controllers share.
 pub struct Model<R> {
-    pub(crate) campaign: Campaign,
+    pub(crate) group: AgentGroup,
     pub(crate) parts: Vec<Subsystem<R>>,
 }
 
@@ -68,12 +68,12 @@ impl AgentOutcome {
 }
 
 impl<R: Real> Model<R> {
-    /// Tabulates the references of a campaign.
+    /// Tabulates the references of a group of agents.
     #[must_use]
-    pub fn new(campaign: &Campaign) -> Self {
+    pub fn new(group: &AgentGroup) -> Self {
         Self {
-            campaign: campaign.clone(),
-            parts: parts(campaign),
+            group: group.clone(),
+            parts: parts(group),
         }
     }
 
@@ -109,15 +109,15 @@ impl<R: Real> Model<R> {
         episodes: &[Episode],
         every: Option<u32>,
     ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
-        let blank = AgentOutcome::blank(self.campaign.channels().len());
+        let blank = AgentOutcome::blank(self.group.channels().len());
         let mut running = EpisodeLoop {
             model: self,
             block: LaneBlock {
-                campaign: &self.campaign,
+                group: &self.group,
                 episodes,
             },
             every,
-            outcomes: vec![vec![blank; self.campaign.team]; episodes.len()],
+            outcomes: vec![vec![blank; self.group.team]; episodes.len()],
             snapshots: Vec::new(),
         };
         for part in &self.parts {
@@ -153,16 +153,16 @@ impl<R: Real> EpisodeLoop<'_, R> {
         C: Law<L, NS>,
     {
         match part.plant {
-            AnyPlant::Axis(plant) => self.group::<L, _, _, 1, NS, 0>(plant, part, laws),
-            AnyPlant::Translation(plant) => self.group::<L, _, _, 3, NS, 0>(plant, part, laws),
-            AnyPlant::Attitude(plant) => self.group::<L, _, _, 3, NS, 0>(plant, part, laws),
-            AnyPlant::Thrust(plant) => self.group::<L, _, _, 6, NS, 4>(plant, part, laws),
-            AnyPlant::FreeLeg(plant) => self.group::<L, _, _, 6, NS, 0>(plant, part, laws),
-            AnyPlant::CutLeg(plant) => self.group::<L, _, _, 6, NS, 0>(plant, part, laws),
+            AnyPlant::Axis(plant) => self.subsystem::<L, _, _, 1, NS, 0>(plant, part, laws),
+            AnyPlant::Translation(plant) => self.subsystem::<L, _, _, 3, NS, 0>(plant, part, laws),
+            AnyPlant::Attitude(plant) => self.subsystem::<L, _, _, 3, NS, 0>(plant, part, laws),
+            AnyPlant::Thrust(plant) => self.subsystem::<L, _, _, 6, NS, 4>(plant, part, laws),
+            AnyPlant::FreeLeg(plant) => self.subsystem::<L, _, _, 6, NS, 0>(plant, part, laws),
+            AnyPlant::CutLeg(plant) => self.subsystem::<L, _, _, 6, NS, 0>(plant, part, laws),
         }
     }
 
-    fn group<L, P, C, const NC: usize, const NS: usize, const NX: usize>(
+    fn subsystem<L, P, C, const NC: usize, const NS: usize, const NX: usize>(
         &mut self,
         plant: P,
         part: &Subsystem<R>,
@@ -172,44 +172,44 @@ impl<R: Real> EpisodeLoop<'_, R> {
         P: Plant<L, NC, NX>,
         C: Law<L, NS>,
     {
-        let campaign = &self.model.campaign;
+        let group = &self.model.group;
         let first = part.channels.start;
-        let verdict = &campaign.verdict;
+        let verdict = &group.verdict;
         let setting = GroupParameters {
             plant,
-            controller: std::array::from_fn(|c| laws[campaign.group_of(first + c)]),
+            controller: std::array::from_fn(|c| laws[group.group_of(first + c)]),
             limits: std::array::from_fn(|c| {
                 Limits::new(
                     verdict.max_error[first + c],
                     verdict.settled_error[first + c],
                 )
             }),
-            coupling: Coupling::of(campaign),
-            measured_integral: campaign.control.integral == IntegralKind::Sensor,
-            step_s: campaign.time.step_s,
-            settle_step: campaign.time.settle_step,
-            seed: campaign.seed,
+            coupling: Coupling::of(group),
+            measured_integral: group.control.integral == IntegralKind::Sensor,
+            step_s: group.time.step_s,
+            settle_step: group.time.settle_step,
+            seed: group.seed,
             table: &part.table,
         };
-        let agents = (0..campaign.team)
+        let agents = (0..group.team)
             .map(|agent| self.agent(&setting, agent, first))
             .collect();
         let numbers = self.block.numbers();
-        let changes = (0..campaign.team)
+        let changes = (0..group.team)
             .flat_map(|agent| {
                 self.block
                     .episodes
                     .iter()
-                    .flat_map(move |episode| changes(campaign, &episode.agents[agent]))
+                    .flat_map(move |episode| changes(group, &episode.agents[agent]))
             })
             .collect();
-        let mut group: TeamState<L, NC, NS, NX> = TeamState::new(agents, numbers, changes);
+        let mut team: TeamState<L, NC, NS, NX> = TeamState::new(agents, numbers, changes);
 
-        let (steps, mut step, mut snapshot) = (campaign.time.steps, 0, 0);
+        let (steps, mut step, mut snapshot) = (group.time.steps, 0, 0);
         loop {
             if self.every.is_some() {
                 let shown = L::dispatch(Show {
-                    group: &mut group,
+                    team: &mut team,
                     setting: &setting,
                 });
                 self.keep(snapshot, step, first, &shown);
@@ -222,12 +222,12 @@ impl<R: Real> EpisodeLoop<'_, R> {
                 .every
                 .map_or(steps, |every| step.saturating_add(every).min(steps));
             L::dispatch(Advance {
-                group: &mut group,
+                team: &mut team,
                 setting: &setting,
                 until: step,
             });
         }
-        self.collect(&mut group, first);
+        self.collect(&mut team, first);
     }
 
     /// The initial state of an agent and what will act on it.
@@ -242,7 +242,7 @@ impl<R: Real> EpisodeLoop<'_, R> {
         P: Plant<L, NC, NX>,
         C: Law<L, NS>,
     {
-        let campaign = &self.model.campaign;
+        let group = &self.model.group;
         let condition: ChannelInputs<L, NC> = self.block.condition(agent, first, Selection::Acting);
         let at_rest = [L::number(0.0); NX];
         let rows = &setting.table[agent * NC * P::ROWS..][..NC * P::ROWS];
@@ -250,14 +250,14 @@ impl<R: Real> EpisodeLoop<'_, R> {
         let (sensor_fault, off) = condition.signals.clone().at_start(
             reference,
             &condition.initial,
-            campaign.seed,
+            group.seed,
             &self.block.numbers(),
         );
         let channels = std::array::from_fn(|c| {
             let [integral, error, rate] = condition.initial[c];
             let mut state = [L::number(0.0); NS];
             state[..3].copy_from_slice(&[integral, error, rate]);
-            if campaign.initial.observer == ObserverStart::Measured {
+            if group.initial.observer == ObserverStart::Measured {
                 setting.controller[c].start(&mut state, off[c], sensor_fault[c]);
             }
             state
@@ -273,7 +273,7 @@ impl<R: Real> EpisodeLoop<'_, R> {
         shown: &[[(ChannelSample, ObserverState); NC]],
     ) {
         if snapshot == self.snapshots.len() {
-            let channels = self.model.campaign.channels().len();
+            let channels = self.model.group.channels().len();
             self.snapshots.push(Snapshot {
                 step,
                 agents: vec![vec![ChannelSample::default(); channels]; shown.len()],
@@ -291,11 +291,11 @@ impl<R: Real> EpisodeLoop<'_, R> {
 
     fn collect<L: Lane, const NC: usize, const NS: usize, const NX: usize>(
         &mut self,
-        group: &mut TeamState<L, NC, NS, NX>,
+        team: &mut TeamState<L, NC, NS, NX>,
         first: usize,
     ) {
-        let time = self.model.campaign.time;
-        for (agent, (endings, channels)) in group
+        let time = self.model.group.time;
+        for (agent, (endings, channels)) in team
             .outcomes(time.settle_step, time.step_s)
             .into_iter()
             .enumerate()

@@ -8,7 +8,7 @@ use super::plant::uav::{Attitude, Axis, Thrust, Translation, inertia, non_inerti
 use crate::agent::robot::dynamics::{inverse_dynamics, mass_matrix};
 use crate::agent::robot::{JOINTS, LEG_JOINTS, Robot};
 use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE, Uav};
-use crate::campaign::{Campaign, DisturbanceKind};
+use crate::campaign::{AgentGroup, DisturbanceKind};
 use crate::reference::ReferencePoint;
 use nalgebra::{Cholesky, Matrix6, Vector6};
 use rayon::prelude::*;
@@ -24,21 +24,21 @@ pub(crate) struct Subsystem<R> {
 }
 
 /// The parts of a campaign's episodes.
-pub(crate) fn parts<R: Real>(campaign: &Campaign) -> Vec<Subsystem<R>> {
-    let (plants, rows) = match &campaign.agent {
-        Agent::Uav(uav) => (uav_plants(uav, campaign.has_vortices()), 1),
+pub(crate) fn parts<R: Real>(group: &AgentGroup) -> Vec<Subsystem<R>> {
+    let (plants, rows) = match &group.agent {
+        Agent::Uav(uav) => (uav_plants(uav, group.has_vortices()), 1),
         Agent::Biped(biped) => {
-            let cut = campaign.is_limited();
+            let cut = group.is_limited();
             let legs = [0..LEG_JOINTS, LEG_JOINTS..JOINTS].into_iter().enumerate();
             let legs = legs.map(|(side, joints)| (leg_plant(&biped.robot, side, cut), joints));
             (legs.collect(), leg_rows(cut))
         }
     };
-    let half_steps = (0..=2 * campaign.time.steps).into_par_iter();
+    let half_steps = (0..=2 * group.time.steps).into_par_iter();
     let agents: Vec<Vec<ReferenceRow<R>>> = half_steps
         .flat_map_iter(|half_step| {
-            let t_s = f64::from(half_step) * campaign.time.step_s / 2.0;
-            (0..campaign.team).map(move |agent| agent_rows(campaign, agent, t_s))
+            let t_s = f64::from(half_step) * group.time.step_s / 2.0;
+            (0..group.team).map(move |agent| agent_rows(group, agent, t_s))
         })
         .collect();
     let part = |(plant, channels): (AnyPlant<R>, Range<usize>)| {
@@ -84,19 +84,19 @@ fn leg_plant<R: Real>(robot: &Robot, side: usize, cut: bool) -> AnyPlant<R> {
 }
 
 /// The rows of an agent's channels at one instant, `[channel][row]`.
-fn agent_rows<R: Real>(campaign: &Campaign, agent: usize, t_s: f64) -> Vec<ReferenceRow<R>> {
-    let points = campaign.reference.at(agent, t_s);
-    let rows = match &campaign.agent {
+fn agent_rows<R: Real>(group: &AgentGroup, agent: usize, t_s: f64) -> Vec<ReferenceRow<R>> {
+    let points = group.reference.at(agent, t_s);
+    let rows = match &group.agent {
         Agent::Uav(uav) => uav_rows(uav, &points),
         Agent::Biped(biped) => {
             let stands = |kind| kind == DisturbanceKind::GroundReaction;
-            let ground = if campaign.disturbances.iter().any(|entry| stands(entry.kind)) {
-                let reference = &campaign.reference;
+            let ground = if group.disturbances.iter().any(|entry| stands(entry.kind)) {
+                let reference = &group.reference;
                 reference.ground_reaction(&biped.robot, agent, t_s)
             } else {
                 [0.0; JOINTS]
             };
-            biped_rows(&biped.robot, &points, &ground, campaign.is_limited())
+            biped_rows(&biped.robot, &points, &ground, group.is_limited())
         }
     };
     rows.into_iter().map(|row| row.map(R::from_f64)).collect()

@@ -389,7 +389,7 @@ fn finite_step(step: f64) -> Option<u32> {
 
 /// [`TeamState::advance`] as a kernel.
 pub(crate) struct Advance<'a, P, C, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
+    pub(crate) team: &'a mut TeamState<L, NC, NS, NX>,
     pub(crate) setting: &'a GroupParameters<'a, P, C, L::Real, NC>,
     pub(crate) until: u32,
 }
@@ -400,13 +400,13 @@ impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usi
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        self.group.advance(self.setting, self.until);
+        self.team.advance(self.setting, self.until);
     }
 }
 
 /// [`TeamState::show`] as a kernel.
 pub(crate) struct Show<'a, P, C, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
-    pub(crate) group: &'a mut TeamState<L, NC, NS, NX>,
+    pub(crate) team: &'a mut TeamState<L, NC, NS, NX>,
     pub(crate) setting: &'a GroupParameters<'a, P, C, L::Real, NC>,
 }
 
@@ -416,6 +416,6 @@ impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usi
     type Output = Vec<[(ChannelSample, ObserverState); NC]>;
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.group.show(self.setting)
+        self.team.show(self.setting)
     }
 }

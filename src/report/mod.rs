@@ -62,10 +62,9 @@ fn document(data: &RunData) -> Document {
     Document {
         title: manifest.name.clone(),
         subtitle: format!(
-            "{} episodes of {} {} over {} s under {}; seed {}",
+            "{} episodes of {} over {} s under {}; seed {}",
             manifest.episodes,
-            campaign.team,
-            campaign.agent.noun(campaign.team),
+            campaign.agents_in_words(),
             f64::from(campaign.time.steps) * campaign.time.step_s,
             campaign.controllers.join(", "),
             manifest.seed

@@ -2,13 +2,16 @@
 
 use super::page::document::LegendEntry;
 use super::page::plot::Color;
-use crate::campaign::{Campaign, CampaignError};
+use crate::campaign::{AgentGroup, Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
 use crate::run::error::OutputError;
 use crate::run::manifest::Manifest;
 use crate::run::table_reader::TableReader;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// What a report reads of the table of channels.
+const RMSE_COLUMNS: [&str; 6] = ["episode", "controller", "group", "agent", "channel", "rmse"];
 
 /// Why there is no report.
 #[derive(Debug, Error)]
@@ -29,7 +32,8 @@ pub(crate) struct RunData {
     pub(crate) dir: PathBuf,
     pub(crate) manifest: Manifest,
     pub(crate) campaign: Campaign,
-    pub(crate) gains: GainSet,
+    /// Of each group of agents.
+    pub(crate) gains: Vec<GainSet>,
     /// Outcomes and draws, by episode, controller and agent.
     pub(crate) episodes: TableReader,
     /// RMS errors, by episode, controller, agent and channel.
@@ -58,11 +62,9 @@ impl RunData {
                 reason: format!("{name}.parquet is missing"),
             })
         };
-        let of_channels =
-            |name: &str| ["episode", "controller", "agent", "channel", "rmse"].contains(&name);
         Ok(Self {
             episodes: needed("episodes", |_| true)?,
-            channels: needed("channels", of_channels)?,
+            channels: needed("channels", |name| RMSE_COLUMNS.contains(&name))?,
             summary: needed("summary", |_| true)?,
             comparison: all("comparison")?,
             screening: all("screening")?,
@@ -83,18 +85,20 @@ impl RunData {
             .collect()
     }
 
-    /// The RMS over the team of a column for each episode under each controller, `[controller][episode]`: infinite
-    /// where an agent diverged. Rows that `wanted` refuses are left out.
+    /// The RMS over a group of agents of a column for each episode under each controller, `[controller][episode]`:
+    /// infinite where an agent diverged. Rows that `wanted` refuses are left out.
     pub(crate) fn of_teams(
         &self,
         sheet: &TableReader,
+        group: &AgentGroup,
         column: &str,
         wanted: impl Fn(usize) -> bool,
     ) -> Vec<Vec<f64>> {
         let episodes = self.manifest.episodes as usize;
-        let team = self.campaign.team as f64;
+        let team = group.team as f64;
         let mut squares = vec![vec![0.0; episodes]; self.campaign.controllers.len()];
-        for row in (0..sheet.rows()).filter(|&row| wanted(row)) {
+        let of_group = |row: &usize| sheet.text(*row, "group") == &*group.name && wanted(*row);
+        for row in (0..sheet.rows()).filter(of_group) {
             let controller = self.controller(sheet.text(row, "controller"));
             let Some(of_controller) = controller.and_then(|index| squares.get_mut(index)) else {
                 continue;

@@ -5,24 +5,37 @@ use super::requirements::{RequirementResult, requirements};
 use super::scores::Scores;
 use super::screening::{Screening, screen};
 use super::sensitivity::{SensitivityResult, WorstEpisode, rank, worst};
-use super::summary::{MetricQuantiles, summarise};
+use super::summary::{FailureRate, MetricQuantiles, failure_rates, summarise};
+use super::verdict::verdict;
+use super::worst_fault::harm;
 use crate::campaign::Campaign;
 use rayon::ThreadPool;
+use serde::{Serialize, Serializer};
 
-/// What the scores of a run say.
-#[derive(Debug, Clone)]
+/// What the scores of a run say; for programs it is written as it stands here.
+#[derive(Debug, Clone, Serialize)]
 pub struct Results {
-    /// How every controller fared.
+    /// Who does better, a sentence for each opponent of the first controller.
+    pub verdict: Vec<String>,
+    /// What the strata do to each controller, in sentences.
+    pub harm: Vec<String>,
+    /// How often every controller failed, and each group of agents alone where there are several.
+    pub failures: Vec<FailureRate>,
+    /// How large the errors of every controller were.
+    #[serde(rename = "errors")]
     pub summary: Vec<MetricQuantiles>,
     /// How every pair compares.
     pub comparisons: Vec<PairedComparison>,
     /// What became of the requirements.
+    #[serde(serialize_with = "judged")]
     pub requirements: Vec<RequirementResult>,
     /// What each stratum does to each controller.
+    #[serde(rename = "screening")]
     pub screenings: Vec<Screening>,
     /// What each condition does to each controller and pair.
     pub ranking: Vec<SensitivityResult>,
     /// The worst episodes of each controller.
+    #[serde(rename = "worst_episodes")]
     pub worst: Vec<WorstEpisode>,
 }
 
@@ -30,13 +43,36 @@ impl Results {
     /// The statistics of a run's scores; the permutations of the sensitivity analysis take the threads of the pool.
     #[must_use]
     pub fn of(campaign: &Campaign, scores: &Scores, pool: &ThreadPool) -> Self {
+        let summary = summarise(campaign, scores);
+        let comparisons = compare(campaign, scores);
+        let screenings = screen(campaign, scores);
         Self {
-            summary: summarise(campaign, scores),
-            comparisons: compare(campaign, scores),
+            verdict: verdict(&summary, &comparisons),
+            harm: harm(&screenings),
+            failures: failure_rates(campaign, scores),
+            summary,
+            comparisons,
             requirements: requirements(campaign, scores),
-            screenings: screen(campaign, scores),
+            screenings,
             ranking: pool.install(|| rank(campaign, scores)),
             worst: worst(campaign, scores),
         }
     }
+}
+
+/// Requirements, each with whether it holds.
+fn judged<S: Serializer>(
+    requirements: &[RequirementResult],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Judged<'a> {
+        #[serde(flatten)]
+        result: &'a RequirementResult,
+        met: bool,
+    }
+    serializer.collect_seq(requirements.iter().map(|result| Judged {
+        result,
+        met: result.is_met(),
+    }))
 }

@@ -14,6 +14,7 @@ pub fn summary_table(rows: &[MetricQuantiles]) -> Table {
     let mut table = Table::default();
     for MetricQuantiles {
         failures,
+        of_group,
         metric,
         group,
         quantiles,
@@ -23,28 +24,33 @@ pub fn summary_table(rows: &[MetricQuantiles]) -> Table {
         row.name(|| "controller".into(), failures.controller.as_str().into())
             .name(|| "stratum".into(), failures.stratum.clone())
             .word(|| "metric".into(), metric)
-            .word(|| "group".into(), group)
+            .name(|| "group".into(), group.clone())
             .count(|| "n".into(), failures.n)
             .count(|| "failed".into(), failures.failed())
             .count(|| "exceeded".into(), failures.exceeded)
             .count(|| "diverged".into(), failures.diverged)
             .real_if("failure_rate", (failures.n > 0).then(|| failures.rate()));
         // Every table has Wilson's columns, and those of the method that holds.
-        for method in [
-            RateMethod::Wilson,
-            RateMethod::Sequential,
-            RateMethod::Replicates,
-        ] {
+        for method in RateMethod::ALL {
             if method == RateMethod::Wilson || method == failures.method {
                 let name = format!("failure_rate_{}", method.name());
                 interval(&mut row, &name, failures.interval_by(method));
             }
         }
         row.real_if("failure_rate_upper_95", failures.upper_95);
-        for (q, value, of_quantile) in quantiles {
-            let name = format!("q{:02}", (q * 100.0).round());
-            row.real_if(&name, *value);
-            interval(&mut row, &name, *of_quantile);
+        if let Some(own) = of_group {
+            row.count(|| "group_failed".into(), own.failed())
+                .count(|| "group_exceeded".into(), own.exceeded)
+                .count(|| "group_diverged".into(), own.diverged)
+                .real_if("group_failure_rate", (own.n > 0).then(|| own.rate()));
+            let name = format!("group_failure_rate_{}", own.method.name());
+            interval(&mut row, &name, own.interval);
+            row.real_if("group_failure_rate_upper_95", own.upper_95);
+        }
+        for quantile in quantiles {
+            let name = format!("q{:02}", (quantile.share * 100.0).round());
+            row.real_if(&name, quantile.value);
+            interval(&mut row, &name, quantile.interval);
         }
     }
     table
@@ -104,19 +110,17 @@ pub fn comparison_table(campaign: &Campaign, comparisons: &[PairedComparison]) -
 pub fn screening_table(screenings: &[Screening]) -> Table {
     let mut table = Table::default();
     for screening in screenings {
-        for (index, harm) in screening.harms.iter().enumerate() {
+        for harm in &screening.harms {
             let mut row = table.row();
             row.name(|| "controller".into(), screening.controller.as_str().into())
                 .name(|| "stratum".into(), harm.stratum.clone())
                 .name(|| "reference".into(), screening.reference.clone());
             estimate(&mut row, "failure_rate_difference", harm.failures);
-            row.flag(
-                || "may_fail_most".into(),
-                screening.most_failures.contains(&index),
-            );
-            for ((group, growth), most) in harm.growth.iter().zip(&screening.most_growth) {
-                estimate(&mut row, &format!("log_growth_{group}"), *growth);
-                row.flag(|| format!("may_grow_most_{group}"), most.contains(&index));
+            row.flag(|| "may_fail_most".into(), harm.may_fail_most);
+            for growth in &harm.growth {
+                let group = growth.group.replace(' ', "_");
+                estimate(&mut row, &format!("log_growth_{group}"), growth.log_growth);
+                row.flag(|| format!("may_grow_most_{group}"), growth.may_grow_most);
             }
         }
     }

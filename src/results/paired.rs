@@ -1,7 +1,7 @@
 //! How pairs of controllers compare on the same episodes.
 
 use super::replicates::{Replicated, over_replicates};
-use super::scores::{Scores, Status};
+use super::scores::{GroupScores, Scores, Status};
 use super::strata::{Subset, parts, replicates};
 use super::team::Layout;
 use crate::campaign::Campaign;
@@ -10,19 +10,21 @@ use crate::statistics::{
     Estimate, Interval, LEVEL, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
     win_rate,
 };
+use serde::Serialize;
 use std::sync::Arc;
 
 /// An estimate, with its interval where the sampling design allows one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Measured {
     /// Point estimate.
     pub value: f64,
     /// 95 % interval.
+    #[serde(rename = "interval_95")]
     pub interval: Option<Interval>,
 }
 
 /// How controller `a` compares with `b` on the same episodes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairedComparison {
     /// First controller.
     pub a: String,
@@ -31,21 +33,27 @@ pub struct PairedComparison {
     /// Which episodes: "all", those of a stratum, or those with or without a fault.
     pub stratum: Arc<str>,
     /// Failures of both, each, and neither.
+    #[serde(flatten)]
     pub failures: PairedFailures,
     /// McNemar's mid-p of equal failure rates, of independent draws.
+    #[serde(rename = "mcnemar_mid_p")]
     pub mid_p: Option<f64>,
     /// The same after Holm's correction for its family: all pairs of controllers in all strata.
+    #[serde(rename = "mcnemar_mid_p_holm")]
     pub p_holm: Option<f64>,
     /// Failure rate of `a` minus that of `b`.
+    #[serde(rename = "failure_rate_difference")]
     pub difference: Option<Measured>,
     /// Student's t of that difference over the replicates of a sampling design, if there are enough of them.
+    #[serde(rename = "failure_rate_difference_replicates")]
     pub over_replicates: Option<Replicated>,
     /// RMS errors, by channel group and by channel.
+    #[serde(rename = "log_ratios")]
     pub ratios: Vec<Ratio>,
 }
 
 /// How much smaller the RMS error of `a` is than that of `b`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ratio {
     /// "group" or "channel".
     pub scope: &'static str,
@@ -55,12 +63,15 @@ pub struct Ratio {
     pub log_ratio: Option<Measured>,
     /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is
     /// the mean of their medians.
+    #[serde(rename = "log_ratio_replicates")]
     pub over_replicates: Option<Replicated>,
     /// Mid-p of the sign test of that median, of independent draws.
+    #[serde(rename = "sign_mid_p")]
     pub sign_p: Option<f64>,
     /// Share of the episodes in which `a` is better; ties count half.
     pub win_rate: Option<Measured>,
     /// Episodes in which only `a`, only `b` and both diverged.
+    #[serde(rename = "diverged_only_a_only_b_both")]
     pub diverged: [u64; 3],
 }
 
@@ -117,14 +128,22 @@ fn compare_pair(
     parts: &[Subset],
 ) -> Vec<PairedComparison> {
     let groups = campaign.channel_groups().into_iter();
-    let groups = groups.map(|group| ("group", Arc::from(group.role.name()), group.channels));
-    let channels = campaign.channels().iter().enumerate();
-    let channels = channels.map(|(c, name)| ("channel", name.clone(), c..c + 1));
-    let series: Vec<(&'static str, Arc<str>, Vec<f64>)> = groups
+    let groups = groups.map(|of| ("group", of.name.clone(), Layout::new(campaign, &of)));
+    let channels = campaign.groups().iter().enumerate();
+    let channels = channels.flat_map(|(index, group)| {
+        let names = group.channels().iter().enumerate();
+        names.map(move |(c, name)| {
+            let layout = Layout::of_channels(campaign, index, c..c + 1);
+            ("channel", Arc::from(group.titled(name)), layout)
+        })
+    });
+    let series: Vec<Series<'_>> = groups
         .chain(channels)
-        .map(|(scope, name, channels)| {
-            let layout = Layout::new(campaign, channels);
-            (scope, name, log_ratios(scores, [a, b], &layout))
+        .map(|(scope, name, layout)| Series {
+            scope,
+            name,
+            log_ratios: log_ratios(scores, [a, b], &layout),
+            status: &layout.scores(scores).status,
         })
         .collect();
     let paired = allows(campaign.sampling.design(), Method::Paired);
@@ -147,9 +166,7 @@ fn compare_pair(
             failures,
             ratios: series
                 .iter()
-                .map(|(scope, name, log_ratios)| {
-                    ratio(campaign, scores, [a, b], part, scope, name, log_ratios)
-                })
+                .map(|series| ratio(campaign, [a, b], part, series))
                 .collect(),
         }
     };
@@ -191,15 +208,22 @@ fn paired_failures(scores: &Scores, [a, b]: [usize; 2], episodes: &[usize]) -> P
     failures
 }
 
-fn ratio(
-    campaign: &Campaign,
-    scores: &Scores,
-    [a, b]: [usize; 2],
-    part: &Subset,
+/// The log-ratios of a pair on some channels, `[episode]`.
+struct Series<'a> {
     scope: &'static str,
-    name: &Arc<str>,
-    log_ratios: &[f64],
-) -> Ratio {
+    name: Arc<str>,
+    log_ratios: Vec<f64>,
+    /// How the episodes ended for the agents whose channels they are, `[controller][episode]`.
+    status: &'a [Vec<Status>],
+}
+
+fn ratio(campaign: &Campaign, [a, b]: [usize; 2], part: &Subset, series: &Series<'_>) -> Ratio {
+    let Series {
+        scope,
+        name,
+        log_ratios,
+        status,
+    } = series;
     let (mut wins, mut losses, mut ties, mut diverged) = (0, 0, 0, [0; 3]);
     for &episode in &part.episodes {
         let log_ratio = log_ratios[episode];
@@ -208,7 +232,7 @@ fn ratio(
             std::cmp::Ordering::Greater => wins += 1,
             std::cmp::Ordering::Less | std::cmp::Ordering::Equal => losses += 1,
         }
-        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        let gone = |controller: usize| status[controller][episode] == Status::Diverged;
         match (gone(a), gone(b)) {
             (true, false) => diverged[0] += 1,
             (false, true) => diverged[1] += 1,
@@ -244,16 +268,17 @@ fn ratio(
 /// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them
 /// diverged, 0 where both did.
 pub(super) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
+    let GroupScores { status, rmse, .. } = layout.scores(scores);
     let of_episode = |episode: usize| {
-        let gone = |controller: usize| scores.status[controller][episode] == Status::Diverged;
+        let gone = |controller: usize| status[controller][episode] == Status::Diverged;
         match (gone(a), gone(b)) {
             (true, true) => 0.0,
             (true, false) => f64::NEG_INFINITY,
             (false, true) => f64::INFINITY,
             (false, false) => {
                 let pairs = layout
-                    .of(&scores.rmse[a], episode)
-                    .zip(layout.of(&scores.rmse[b], episode));
+                    .of(&rmse[a], episode)
+                    .zip(layout.of(&rmse[b], episode));
                 let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
                     (sum + log_ratio_of(of_a, of_b), count + 1.0)
                 });

@@ -1,14 +1,16 @@
 //! What the replicates of a sampling design say where its episodes are not independent.
 
 use crate::statistics::{Estimate, LEVEL, replicate_mean, replicate_p};
+use serde::Serialize;
 
 /// Fewest replicates of a sampling design whose scatter gives an interval.
 pub const FEWEST_REPLICATES: usize = 5;
 
 /// What the replicates of a sampling design say of a difference.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Replicated {
     /// Mean of the replicates' estimates, with Student's t interval.
+    #[serde(flatten)]
     pub estimate: Estimate,
     /// p-value of Student's t test that there is no difference.
     pub p: f64,

@@ -1,11 +1,13 @@
 //! How episodes ended, and the numbers that the statistics of a run read.
 
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
+use serde::Serialize;
 
 /// How an agent or an episode ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Within the limits.
     Ok,
@@ -27,12 +29,12 @@ impl Status {
     }
 }
 
-/// What the verdict of a campaign makes of an agent's outcome.
+/// What the verdict of a group makes of an agent's outcome.
 #[must_use]
-pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
+pub fn status(group: &AgentGroup, outcome: &AgentOutcome) -> Status {
     // max_error was judged step by step, in the precision of the loop.
     let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
-        metrics.rmse > campaign.verdict.max_rmse[channel]
+        metrics.rmse > group.verdict.max_rmse[channel]
     };
     if outcome.diverged {
         Status::Diverged
@@ -43,10 +45,24 @@ pub fn status(campaign: &Campaign, outcome: &AgentOutcome) -> Status {
     }
 }
 
-/// The numbers that the statistics of a run read. Episodes are in order; so are controllers, agents and channels.
+/// The numbers that the statistics of a run read. Episodes are in order; so are groups, controllers, agents and
+/// channels.
 #[derive(Debug, Clone, Default)]
 pub struct Scores {
-    /// Worst status of the team, `[controller][episode]`.
+    /// Worst status of all agents, `[controller][episode]`.
+    pub status: Vec<Vec<Status>>,
+    /// Of each group of agents.
+    pub groups: Vec<GroupScores>,
+    /// Whether an agent of the episode has the fault, `[fault][episode]`; faults are numbered through all groups.
+    pub fault_occurs: Vec<Vec<bool>>,
+    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]).
+    pub conditions: Vec<(String, Vec<Option<f64>>)>,
+}
+
+/// The numbers of one group of agents.
+#[derive(Debug, Clone, Default)]
+pub struct GroupScores {
+    /// Worst status of its agents, `[controller][episode]`.
     pub status: Vec<Vec<Status>>,
     /// RMS error, `[controller]` then episode, agent, channel in one list.
     pub rmse: Vec<Vec<f64>>,
@@ -54,10 +70,6 @@ pub struct Scores {
     pub max_abs: Vec<Vec<f64>>,
     /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
     pub failed_step: Vec<Vec<Option<u32>>>,
-    /// Whether an agent of the episode has the fault, `[fault][episode]`.
-    pub fault_occurs: Vec<Vec<bool>>,
-    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]).
-    pub conditions: Vec<(String, Vec<Option<f64>>)>,
 }
 
 impl Scores {
@@ -66,18 +78,27 @@ impl Scores {
     pub fn episodes(&self) -> usize {
         self.status.first().map_or(0, Vec::len)
     }
+}
+
+impl GroupScores {
+    /// Of so many controllers, nothing yet.
+    pub(super) fn new(controllers: usize) -> Self {
+        Self {
+            status: vec![Vec::new(); controllers],
+            rmse: vec![Vec::new(); controllers],
+            max_abs: vec![Vec::new(); controllers],
+            failed_step: vec![Vec::new(); controllers],
+        }
+    }
 
     /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that
     /// are none are all alike.
     #[must_use]
-    pub fn holds(
-        &self,
-        campaign: &Campaign,
-        controller: usize,
-        episode: u32,
-        agents: &[AgentOutcome],
-    ) -> bool {
-        let stride = campaign.team * campaign.channels().len();
+    pub fn holds(&self, controller: usize, episode: u32, agents: &[AgentOutcome]) -> bool {
+        let stride = agents
+            .iter()
+            .map(|agent| agent.channels.len())
+            .sum::<usize>();
         let rows = episode as usize * stride..(episode as usize + 1) * stride;
         let same = |kept: &[f64], pick: fn(&ChannelOutcome) -> f64| {
             let again = agents.iter().flat_map(|agent| &agent.channels).map(pick);

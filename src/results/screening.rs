@@ -10,40 +10,58 @@ use super::scores::Scores;
 use super::strata::{Subset, parts};
 use super::summary::FailureRate;
 use super::team::{Layout, team_rmse};
-use crate::agent::ChannelGroup;
-use crate::campaign::{Campaign, StratumFaults};
+use crate::campaign::{Campaign, ChannelsOfCampaign, StratumFaults};
 use crate::statistics::{
     Estimate, LEVEL, independent_difference, quantile, quantile_interval, wilson,
 };
+use serde::Serialize;
 use std::sync::Arc;
 
 /// What the strata with certain faults do to a controller.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Screening {
     /// The controller.
     pub controller: String,
     /// The stratum that the others are compared with.
     pub reference: Arc<str>,
     /// The other strata with certain faults, in the campaign's order.
+    #[serde(rename = "strata")]
     pub harms: Vec<FaultEffect>,
     /// The strata (of `harms`, by index) that cannot be told apart, at 95 %, from the one that fails most often, which
     /// is the first.
+    #[serde(skip)]
     pub most_failures: Vec<usize>,
     /// The same for the growth of the errors, by channel group.
+    #[serde(skip)]
     pub most_growth: Vec<Vec<usize>>,
 }
 
 /// What a stratum does to a controller.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultEffect {
     /// The stratum.
     pub stratum: Arc<str>,
     /// How often the controller fails there.
+    #[serde(skip)]
     pub rate: FailureRate,
     /// Failure rate minus that of the reference (Newcombe 1998, Statistics in Medicine 17:873-890, method 10).
+    #[serde(rename = "failure_rate_difference")]
     pub failures: Option<Estimate>,
-    /// By channel group: logarithm of the median RMS error minus that of the reference.
-    pub growth: Vec<(&'static str, Option<Estimate>)>,
+    /// Whether it may be the stratum in which the controller fails most often.
+    pub may_fail_most: bool,
+    /// By channel group.
+    pub growth: Vec<Growth>,
+}
+
+/// What a stratum does to the errors of a controller on a channel group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Growth {
+    /// The channel group.
+    pub group: Arc<str>,
+    /// Logarithm of the median RMS error minus that of the reference.
+    pub log_growth: Option<Estimate>,
+    /// Whether it may be the stratum in which these errors grow most.
+    pub may_grow_most: bool,
 }
 
 /// What each stratum with certain faults does to each controller; nothing unless there are two strata to compare.
@@ -96,8 +114,8 @@ fn screen_controller(
     let groups = campaign.channel_groups();
     let errors: Vec<Vec<Vec<f64>>> = groups
         .iter()
-        .map(|ChannelGroup { channels, .. }| {
-            let layout = Layout::new(campaign, channels.clone());
+        .map(|of_group| {
+            let layout = Layout::new(campaign, of_group);
             let rmse = team_rmse(scores, controller, &layout);
             let of_part = |(part, _): &(&Subset, bool)| {
                 let mut logs: Vec<f64> = part.episodes.iter().map(|&k| rmse[k].ln()).collect();
@@ -114,29 +132,31 @@ fn screen_controller(
             interval: quantile_interval(sorted, 0.5, level)?,
         })
     };
+    let most_failures = worst(&others, &share);
+    let most_growth: Vec<Vec<usize>> = (0..groups.len())
+        .map(|group| worst(&others, &|k, level| median(group, k, level)))
+        .collect();
+    let growth = |place: usize, k: usize| -> Vec<Growth> {
+        let of_group = |(group, own): (usize, &ChannelsOfCampaign)| Growth {
+            group: own.name.clone(),
+            log_growth: difference(&|k, level| median(group, k, level), k, reference, LEVEL),
+            may_grow_most: most_growth[group].contains(&place),
+        };
+        groups.iter().enumerate().map(of_group).collect()
+    };
+    let harms = others.iter().enumerate().map(|(place, &k)| FaultEffect {
+        stratum: certain[k].0.name.clone(),
+        rate: rates[k].clone(),
+        failures: difference(&share, k, reference, LEVEL),
+        may_fail_most: most_failures.contains(&place),
+        growth: growth(place, k),
+    });
     Screening {
         controller: campaign.controllers[controller].clone(),
         reference: certain[reference].0.name.clone(),
-        harms: others
-            .iter()
-            .map(|&k| FaultEffect {
-                stratum: certain[k].0.name.clone(),
-                rate: rates[k].clone(),
-                failures: difference(&share, k, reference, LEVEL),
-                growth: groups
-                    .iter()
-                    .enumerate()
-                    .map(|(group, own)| {
-                        let median = |k, level| median(group, k, level);
-                        (own.role.name(), difference(&median, k, reference, LEVEL))
-                    })
-                    .collect(),
-            })
-            .collect(),
-        most_failures: worst(&others, &share),
-        most_growth: (0..groups.len())
-            .map(|group| worst(&others, &|k, level| median(group, k, level)))
-            .collect(),
+        harms: harms.collect(),
+        most_failures,
+        most_growth,
     }
 }
 

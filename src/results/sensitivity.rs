@@ -1,14 +1,14 @@
 //! Which condition breaks it: the effect of what was drawn on how the controllers fared, and the worst episodes.
 
-use super::paired::log_ratios;
+use super::paired::{Measured, log_ratios};
 use super::scores::{Scores, Status};
 use super::table::Table;
 use super::team::{Layout, team_rmse};
-use crate::agent::ChannelGroup;
-use crate::campaign::{Campaign, Stratum, StratumFaults};
+use crate::campaign::{AgentGroup, Campaign, Fault, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;
 use crate::random::{Method, allows};
-use crate::statistics::{Effect, Interval, LEVEL, Outcome, Permutations, Ranked, effects, holm};
+use crate::statistics::{Effect, LEVEL, Outcome, Permutations, Ranked, effects, holm};
+use serde::{Serialize, Serializer};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -22,36 +22,45 @@ const PER_CONDITION: usize = 120;
 const WORST: usize = 10;
 
 /// What a condition may have an effect on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Target {
     /// "failure", "rmse" or "log_ratio".
+    #[serde(rename = "target")]
     pub kind: &'static str,
     /// The controller.
     pub controller: String,
     /// The controller that it is compared with, of a log-ratio: ln(rmse of `against` / rmse of `controller`).
     pub against: Option<String>,
     /// The channel group, unless it is about failures.
-    pub group: Option<&'static str>,
+    pub group: Option<Arc<str>>,
 }
 
 /// The effect of a condition on a target, over the episodes in which it applies.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensitivityResult {
     /// What it has an effect on.
+    #[serde(flatten)]
     pub target: Target,
     /// The condition, as [`crate::draw::quantities`] names it.
     pub condition: String,
-    /// The effect: [`crate::statistics::somers_d`] on failures, Spearman's rank correlation on all else.
-    pub effect: Effect,
-    /// Interval of the trend, of independent draws.
-    pub interval: Option<Interval>,
+    /// Episodes in which the condition applies.
+    pub episodes: usize,
+    /// The monotone effect: [`crate::statistics::somers_d`] on failures, Spearman's rank correlation on all else; its
+    /// interval is that of independent draws.
+    pub trend: Measured,
+    /// p-value of no such effect; where there is `p_holm`.
+    pub trend_p: Option<f64>,
+    /// The effect of any form ([`crate::statistics::Effect::shape`]).
+    pub shape: f64,
+    /// p-value of no such effect; where there is `p_holm`.
+    pub shape_p: Option<f64>,
     /// p-value of no effect, after Holm's correction for all conditions of the target; where permutations are a test of
     /// it: of independent draws and within one hypercube.
     pub p_holm: Option<f64>,
 }
 
 /// A bad episode.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WorstEpisode {
     /// The controller.
     pub controller: String,
@@ -62,6 +71,7 @@ pub struct WorstEpisode {
     /// How it ended.
     pub status: Status,
     /// Largest |e| over its limit in the verdict, or in m or rad where there is none; infinite after a divergence.
+    #[serde(rename = "largest_error_over_limit")]
     pub excess: f64,
     /// When an agent first broke max_error or left the numbers, s.
     pub failed_at_s: Option<f64>,
@@ -74,7 +84,15 @@ pub struct WorstEpisode {
     /// The faults that struck someone.
     pub faults: Vec<Arc<str>>,
     /// What the episode met.
+    #[serde(serialize_with = "by_name")]
     pub conditions: Vec<(String, Option<f64>)>,
+}
+
+fn by_name<S: Serializer>(
+    conditions: &[(String, Option<f64>)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(conditions.iter().map(|(name, size)| (name, size)))
 }
 
 /// The effects of all conditions that vary, of each target the largest trend first.
@@ -116,14 +134,20 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
             .map(|((name, effect), p_holm)| SensitivityResult {
                 target: target.clone(),
                 condition: (*name).clone(),
-                effect,
-                // With few episodes the interval may be all of [-1, 1]; then it is omitted.
-                interval: Some(effect.trend.interval)
-                    .filter(|own| with_interval && (own.lower > -1.0 || own.upper < 1.0)),
+                episodes: effect.n,
+                trend: Measured {
+                    value: effect.trend.value,
+                    // With few episodes the interval may be all of [-1, 1]; then it is omitted.
+                    interval: Some(effect.trend.interval)
+                        .filter(|own| with_interval && (own.lower > -1.0 || own.upper < 1.0)),
+                },
+                trend_p: tested.then_some(effect.trend_p),
+                shape: effect.shape,
+                shape_p: tested.then_some(effect.shape_p),
                 p_holm: tested.then_some(p_holm),
             })
             .collect();
-        let size = |ranked: &SensitivityResult| ranked.effect.trend.value.abs();
+        let size = |ranked: &SensitivityResult| ranked.trend.value.abs();
         ranked.sort_by(|a, b| size(b).total_cmp(&size(a)));
         ranked
     };
@@ -143,8 +167,12 @@ pub(crate) fn by_chance(
 ) -> Vec<Option<f64>> {
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::ByProbability;
     let strata = &campaign.strata;
+    let has_background = |fault| {
+        let mut faults = campaign.faults();
+        faults.nth(fault).is_some_and(|(_, fault)| fault.background)
+    };
     let only_drawn = match fault_of(condition) {
-        Some((fault, _)) if campaign.faults[fault].background => false,
+        Some((fault, _)) if has_background(fault) => false,
         Some((_, "agents")) => !strata.is_empty(),
         Some(_) => strata.all().iter().any(draws),
         None => false,
@@ -173,24 +201,24 @@ fn targets(campaign: &Campaign, scores: &Scores) -> Vec<(Target, Outcome)> {
         let failed: Vec<bool> = failed.collect();
         let outcome = Outcome::Failure(Ranked::of_flags(&failed));
         targets.push((target("failure", None), outcome));
-        for ChannelGroup { role, channels } in &groups {
-            let rmse = team_rmse(scores, index, &Layout::new(campaign, channels.clone()));
+        for of_group in &groups {
+            let rmse = team_rmse(scores, index, &Layout::new(campaign, of_group));
             if let Some(ranked) = Ranked::of_all(&rmse) {
-                let target = target("rmse", Some(role.name()));
+                let target = target("rmse", Some(of_group.name.clone()));
                 targets.push((target, Outcome::Metric(ranked)));
             }
         }
     }
     for a in 0..controllers.len() {
         for b in a + 1..controllers.len() {
-            for ChannelGroup { role, channels } in &groups {
-                let layout = Layout::new(campaign, channels.clone());
+            for of_group in &groups {
+                let layout = Layout::new(campaign, of_group);
                 if let Some(ranked) = Ranked::of_all(&log_ratios(scores, [a, b], &layout)) {
                     let target = Target {
                         kind: "log_ratio",
                         controller: controllers[a].clone(),
                         against: Some(controllers[b].clone()),
-                        group: Some(role.name()),
+                        group: Some(of_group.name.clone()),
                     };
                     targets.push((target, Outcome::Metric(ranked)));
                 }
@@ -231,30 +259,38 @@ struct Bad {
 
 impl Bad {
     fn of(campaign: &Campaign, scores: &Scores, controller: usize, episode: usize) -> Self {
-        let (team, channels) = (campaign.team, campaign.channels().len());
         let status = scores.status[controller][episode];
-        let steps = &scores.failed_step[controller][episode * team..(episode + 1) * team];
-        let step = |agent: usize| steps[agent].unwrap_or(u32::MAX);
-        let first = (0..team).min_by_key(|&agent| step(agent)).unwrap_or(0);
-        let errors = &scores.max_abs[controller][episode * team * channels..];
+        let step = |agent: usize| {
+            let (group, own) = campaign.member(agent);
+            let of_group = &scores.groups[campaign.group_index(agent)];
+            let steps = &of_group.failed_step[controller];
+            steps[episode * group.team + own].unwrap_or(u32::MAX)
+        };
+        let agents = campaign.agents();
+        let first = (0..agents).min_by_key(|&agent| step(agent)).unwrap_or(0);
         // If an episode diverges, only its first failing agent counts: it may have pulled the others along.
-        let agents = match status {
+        let looked_at = match status {
             Status::Diverged => first..first + 1,
-            Status::Ok | Status::Exceeded => 0..team,
+            Status::Ok | Status::Exceeded => 0..agents,
         };
-        let over = |(agent, channel): (usize, usize)| {
-            let limit = campaign.verdict.max_error[channel];
-            let limit = if limit.is_finite() { limit } else { 1.0 };
-            let excess = match errors[agent * channels + channel] / limit {
-                // What left the numbers is as large as can be.
-                excess if excess.is_nan() => f64::INFINITY,
-                excess => excess,
-            };
-            (excess, agent, channel)
+        let of_agent = |agent: usize| {
+            let (group, own) = campaign.member(agent);
+            let channels = group.channels().len();
+            let errors = &scores.groups[campaign.group_index(agent)].max_abs[controller];
+            let errors = &errors[(episode * group.team + own) * channels..];
+            let limits = group.verdict.max_error.iter().zip(errors).enumerate();
+            limits.map(move |(channel, (limit, error))| {
+                let limit = if limit.is_finite() { *limit } else { 1.0 };
+                let excess = match error / limit {
+                    // What left the numbers is as large as can be.
+                    excess if excess.is_nan() => f64::INFINITY,
+                    excess => excess,
+                };
+                (excess, agent, channel)
+            })
         };
-        let places = agents.flat_map(|agent| (0..channels).map(move |channel| (agent, channel)));
-        let largest = places
-            .map(over)
+        let largest = looked_at
+            .flat_map(of_agent)
             .reduce(|a, b| if b.0 > a.0 { b } else { a });
         let (excess, agent, channel) = largest.unwrap_or_default();
         Self {
@@ -288,8 +324,9 @@ impl Bad {
     ) -> WorstEpisode {
         let time = campaign.time;
         let index = u32::try_from(self.episode).unwrap_or(u32::MAX);
-        let faults = campaign.faults.iter().zip(&scores.fault_occurs);
+        let faults = campaign.faults().zip(&scores.fault_occurs);
         let struck = faults.filter(|(_, occurs)| occurs.get(self.episode) == Some(&true));
+        let titled = |((group, fault), _): ((&AgentGroup, &Fault), _)| group.titled(&fault.name);
         let conditions = scores.conditions.iter();
         WorstEpisode {
             controller: controller.to_string(),
@@ -300,9 +337,9 @@ impl Bad {
             failed_at_s: (self.failed_step != u32::MAX)
                 .then(|| f64::from(self.failed_step) * time.step_s),
             agent: self.agent,
-            channel: campaign.channels()[self.channel].clone(),
+            channel: campaign.member(self.agent).0.channels()[self.channel].clone(),
             stratum: campaign.strata.of(index).map(|own| own.name.clone()),
-            faults: struck.map(|(fault, _)| fault.name.clone()).collect(),
+            faults: struck.map(titled).map(Arc::from).collect(),
             conditions: conditions
                 .map(|(name, values)| (name.clone(), values[self.episode]))
                 .collect(),
@@ -317,8 +354,11 @@ pub fn ranking_table(ranking: &[SensitivityResult]) -> Table {
     for SensitivityResult {
         target,
         condition,
-        effect,
-        interval,
+        episodes,
+        trend,
+        trend_p,
+        shape,
+        shape_p,
         p_holm,
     } in ranking
     {
@@ -329,15 +369,15 @@ pub fn ranking_table(ranking: &[SensitivityResult]) -> Table {
                 || "against".into(),
                 target.against.as_deref().unwrap_or_default().into(),
             )
-            .word(|| "group".into(), target.group.unwrap_or_default())
+            .name(|| "group".into(), target.group.clone().unwrap_or_default())
             .name(|| "condition".into(), condition.as_str().into())
-            .count(|| "episodes".into(), effect.n as u64)
-            .real(|| "trend".into(), effect.trend.value)
-            .real_if("trend_lower", interval.map(|interval| interval.lower))
-            .real_if("trend_upper", interval.map(|interval| interval.upper))
-            .real_if("trend_p", p_holm.map(|_| effect.trend_p))
-            .real(|| "shape".into(), effect.shape)
-            .real_if("shape_p", p_holm.map(|_| effect.shape_p))
+            .count(|| "episodes".into(), *episodes as u64)
+            .real(|| "trend".into(), trend.value)
+            .real_if("trend_lower", trend.interval.map(|own| own.lower))
+            .real_if("trend_upper", trend.interval.map(|own| own.upper))
+            .real_if("trend_p", *trend_p)
+            .real(|| "shape".into(), *shape)
+            .real_if("shape_p", *shape_p)
             .real_if("p_holm", *p_holm);
     }
     table

@@ -30,11 +30,12 @@ pub(crate) fn parts(campaign: &Campaign, scores: &Scores) -> Vec<Subset> {
     if !campaign.strata.is_empty() {
         return parts;
     }
-    for (index, (fault, occurs)) in campaign.faults.iter().zip(&scores.fault_occurs).enumerate() {
+    let faults = campaign.faults().zip(&scores.fault_occurs).enumerate();
+    for (index, ((group, fault), occurs)) in faults {
         if fault.probability.iter().any(|own| *own < 1.0) {
             let (with, without) = all.iter().copied().partition(|&episode| occurs[episode]);
             for (word, episodes) in [("with", with), ("without", without)] {
-                let name = format!("{word} fault{index} {}", fault.name).into();
+                let name = format!("{word} fault{index} {}", group.titled(&fault.name)).into();
                 parts.push(Subset { name, episodes });
             }
         }

@@ -4,13 +4,14 @@ use super::replicates::over_replicates;
 use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
 use super::team::Layout;
-use crate::agent::ChannelGroup;
 use crate::campaign::Campaign;
 use crate::random::{Method, allows};
 use crate::statistics::{
     Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, rms, sequential_interval,
     sequential_upper, wilson,
 };
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// The quantiles of the summary.
@@ -29,6 +30,9 @@ pub enum RateMethod {
 }
 
 impl RateMethod {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Wilson, Self::Sequential, Self::Replicates];
+
     /// The method of a campaign.
     #[must_use]
     pub fn of(campaign: &Campaign) -> Self {
@@ -55,6 +59,8 @@ impl RateMethod {
 pub struct FailureRate {
     /// Name of the controller.
     pub controller: String,
+    /// The group of agents whose failures alone are counted; none where an episode fails with any agent.
+    pub agents: Option<Arc<str>>,
     /// Which episodes: "all", those of a stratum, or those with or without a fault.
     pub stratum: Arc<str>,
     /// Episodes in the stratum.
@@ -70,6 +76,30 @@ pub struct FailureRate {
     /// One-sided 95 % bound of the failure rate, of independent draws: Clopper-Pearson's, or that of the confidence
     /// sequence.
     pub upper_95: Option<f64>,
+}
+
+/// What [`FailureRate`] is for programs: with the counts and rates that follow from it, and its interval under the name
+/// of its method.
+impl Serialize for FailureRate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("controller", &self.controller)?;
+        if let Some(agents) = &self.agents {
+            map.serialize_entry("agents", agents)?;
+        }
+        map.serialize_entry("stratum", &self.stratum)?;
+        map.serialize_entry("n", &self.n)?;
+        map.serialize_entry("failed", &self.failed())?;
+        map.serialize_entry("exceeded", &self.exceeded)?;
+        map.serialize_entry("diverged", &self.diverged)?;
+        map.serialize_entry("failure_rate", &self.rate())?;
+        for method in RateMethod::ALL {
+            let key = format!("{}_95", method.name());
+            map.serialize_entry(&key, &self.interval_by(method))?;
+        }
+        map.serialize_entry("upper_95", &self.upper_95)?;
+        map.end()
+    }
 }
 
 impl FailureRate {
@@ -98,7 +128,34 @@ impl FailureRate {
         controller: usize,
         part: &Subset,
     ) -> Self {
-        let status = &scores.status[controller];
+        Self::counted(campaign, None, &scores.status, controller, part)
+    }
+
+    /// The same of each group of agents alone, where the campaign names several.
+    fn of_groups(
+        campaign: &Campaign,
+        scores: &Scores,
+        controller: usize,
+        part: &Subset,
+    ) -> Vec<Self> {
+        let groups = campaign.groups().iter().zip(&scores.groups);
+        let named = groups.filter(|_| campaign.has_named_groups());
+        let own = named.map(|(group, own)| {
+            let agents = Some(group.name.clone());
+            Self::counted(campaign, agents, &own.status, controller, part)
+        });
+        own.collect()
+    }
+
+    /// Counts failures of agents under whom the episodes ended so, `[controller][episode]`.
+    fn counted(
+        campaign: &Campaign,
+        agents: Option<Arc<str>>,
+        status: &[Vec<Status>],
+        controller: usize,
+        part: &Subset,
+    ) -> Self {
+        let status = &status[controller];
         let count = |episodes: &[usize], wanted: &[Status]| {
             let of_these = |episode: &&usize| wanted.contains(&status[**episode]);
             episodes.iter().filter(of_these).count() as u64
@@ -121,6 +178,7 @@ impl FailureRate {
         };
         Self {
             controller: campaign.controllers[controller].clone(),
+            agents,
             stratum: part.name.clone(),
             n,
             exceeded,
@@ -141,17 +199,50 @@ impl FailureRate {
 }
 
 /// Quantiles of one metric over the episodes of a stratum.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MetricQuantiles {
     /// Failures of the same controller in the same stratum.
+    #[serde(flatten)]
     pub failures: FailureRate,
+    /// Failures of the group's agents alone, where the campaign has several groups.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of_group: Option<FailureRate>,
     /// "rmse" or "max_abs".
     pub metric: &'static str,
-    /// "position" (m), "attitude" or "joints" (rad).
-    pub group: &'static str,
+    /// "position" (m), "attitude" or "joints" (rad), with the name of the agents' group in front where it has one.
+    pub group: Arc<str>,
     /// Each of the quantiles, with its order-statistic interval where the design allows one and there are episodes
     /// enough.
-    pub quantiles: Vec<(f64, Option<f64>, Option<Interval>)>,
+    pub quantiles: Vec<Quantile>,
+}
+
+/// A quantile of a metric.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantile {
+    /// The share of the episodes that are not above it.
+    pub share: f64,
+    /// Its value; none of no episodes.
+    pub value: Option<f64>,
+    /// Its order-statistic interval.
+    #[serde(rename = "interval_95")]
+    pub interval: Option<Interval>,
+}
+
+/// How often every controller failed, in all episodes and in each stratum; where the campaign names several groups
+/// of agents, then how often each of them did alone.
+#[must_use]
+pub fn failure_rates(campaign: &Campaign, scores: &Scores) -> Vec<FailureRate> {
+    let parts = parts(campaign, scores);
+    let controllers = 0..campaign.controllers.len();
+    let of_part = |(controller, part)| {
+        let all = FailureRate::of(campaign, scores, controller, part);
+        let groups = FailureRate::of_groups(campaign, scores, controller, part);
+        std::iter::once(all).chain(groups).collect::<Vec<_>>()
+    };
+    controllers
+        .flat_map(|controller| parts.iter().map(move |part| (controller, part)))
+        .flat_map(of_part)
+        .collect()
 }
 
 /// How every controller fared, in all episodes and in each stratum.
@@ -163,12 +254,15 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
     for controller in 0..campaign.controllers.len() {
         for part in &parts {
             let failures = FailureRate::of(campaign, scores, controller, part);
-            for ChannelGroup { role, channels } in campaign.channel_groups() {
-                let layout = Layout::new(campaign, channels);
-                for (metric, values) in [("rmse", &scores.rmse), ("max_abs", &scores.max_abs)] {
+            let of_groups = FailureRate::of_groups(campaign, scores, controller, part);
+            for channels in campaign.channel_groups() {
+                let layout = Layout::new(campaign, &channels);
+                let own = layout.scores(scores);
+                let status = &own.status[controller];
+                for (metric, values) in [("rmse", &own.rmse), ("max_abs", &own.max_abs)] {
                     let of_episode = |&episode: &usize| {
                         let of_team = layout.of(&values[controller], episode);
-                        match scores.status[controller][episode] {
+                        match status[episode] {
                             Status::Diverged => f64::INFINITY,
                             _ if metric == "rmse" => rms(of_team),
                             _ => of_team.fold(0.0, f64::max),
@@ -178,12 +272,17 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                     sorted.sort_unstable_by(f64::total_cmp);
                     let of_share = |q| {
                         let interval = quantile_interval(&sorted, q, LEVEL);
-                        (q, quantile(&sorted, q), interval.filter(|_| intervals))
+                        Quantile {
+                            share: q,
+                            value: quantile(&sorted, q),
+                            interval: interval.filter(|_| intervals),
+                        }
                     };
                     rows.push(MetricQuantiles {
                         failures: failures.clone(),
+                        of_group: of_groups.get(channels.group).cloned(),
                         metric,
-                        group: role.name(),
+                        group: channels.name.clone(),
                         quantiles: QUANTILES.map(of_share).to_vec(),
                     });
                 }

@@ -4,41 +4,57 @@ use polars::prelude::{
     Column, DataFrame, Float64Chunked, IntoColumn, NamedFrom, NewChunkedArray, PlSmallStr,
     PolarsError, Series,
 };
+use std::borrow::Cow;
 use std::sync::Arc;
 
-/// A table under construction: columns are made by the first row, and every row fills them in the same order.
+/// A table under construction. The first row of a kind says which columns its cells fill; all others of that kind fill
+/// the same in the same order. Most tables have rows of one kind; columns that a row's kind lacks are empty there.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     columns: Vec<(String, Values)>,
+    /// Of each kind of rows, the columns of its cells.
+    kinds: Vec<Vec<usize>>,
+    rows: usize,
 }
 
 /// A column under construction. A real that is not a number stands for "does not apply" and becomes a null.
 #[derive(Debug, Clone)]
 enum Values {
     Real(Vec<f64>),
-    Count(Vec<u64>),
-    Word(Vec<&'static str>),
-    Name(Vec<Arc<str>>),
-    Flag(Vec<bool>),
+    Count(Vec<Option<u64>>),
+    Word(Vec<Option<&'static str>>),
+    Name(Vec<Option<Arc<str>>>),
+    Flag(Vec<Option<bool>>),
+}
+
+impl Values {
+    /// Adds empty cells up to a number of rows.
+    fn fill(&mut self, rows: usize) {
+        match self {
+            Self::Real(values) => values.resize(rows, f64::NAN),
+            Self::Count(values) => values.resize(rows, None),
+            Self::Word(values) => values.resize(rows, None),
+            Self::Name(values) => values.resize(rows, None),
+            Self::Flag(values) => values.resize(rows, None),
+        }
+    }
 }
 
 /// A row being added to a [`Table`].
 pub struct Row<'a> {
     table: &'a mut Table,
+    kind: usize,
     next: usize,
 }
 
 macro_rules! cell {
-    ($(#[$doc:meta])* $method:ident, $variant:ident, $value:ty) => {
+    ($(#[$doc:meta])* $method:ident, $variant:ident, $value:ty, $cell:expr) => {
         $(#[$doc])*
         pub fn $method(&mut self, name: impl FnOnce() -> String, value: $value) -> &mut Self {
-            if self.next == self.table.columns.len() {
-                self.table.columns.push((name(), Values::$variant(Vec::new())));
+            let column = self.column(name, || Values::$variant(Vec::new()));
+            if let Values::$variant(values) = column {
+                values.push($cell(value));
             }
-            if let Some((_, Values::$variant(values))) = self.table.columns.get_mut(self.next) {
-                values.push(value);
-            }
-            self.next += 1;
             self
         }
     };
@@ -46,15 +62,41 @@ macro_rules! cell {
 
 impl Row<'_> {
     cell!(/// A real number; not a number where it does not apply.
-        real, Real, f64);
+        real, Real, f64, |value| value);
     cell!(/// A number of things.
-        count, Count, u64);
+        count, Count, u64, Some);
     cell!(/// A word of a fixed list.
-        word, Word, &'static str);
+        word, Word, &'static str, Some);
     cell!(/// A name.
-        name, Name, Arc<str>);
+        name, Name, Arc<str>, Some);
     cell!(/// Yes or no.
-        flag, Flag, bool);
+        flag, Flag, bool, Some);
+
+    /// The column of the next cell.
+    fn column(
+        &mut self,
+        name: impl FnOnce() -> String,
+        empty: impl FnOnce() -> Values,
+    ) -> &mut Values {
+        let Table {
+            columns,
+            kinds,
+            rows,
+        } = &mut *self.table;
+        let of_kind = &mut kinds[self.kind];
+        if self.next == of_kind.len() {
+            let name = name();
+            let known = columns.iter().position(|(own, _)| *own == name);
+            of_kind.push(known.unwrap_or(columns.len()));
+            if known.is_none() {
+                let mut values = empty();
+                values.fill(*rows - 1);
+                columns.push((name, values));
+            }
+        }
+        self.next += 1;
+        &mut columns[of_kind[self.next - 1]].1
+    }
 
     /// A real number where it applies.
     pub fn real_if(&mut self, name: &str, value: Option<f64>) -> &mut Self {
@@ -65,8 +107,21 @@ impl Row<'_> {
 impl Table {
     /// Begins a row.
     pub fn row(&mut self) -> Row<'_> {
+        self.row_of(0)
+    }
+
+    /// Begins a row of one of several kinds.
+    pub fn row_of(&mut self, kind: usize) -> Row<'_> {
+        let kinds = self.kinds.len().max(kind + 1);
+        self.kinds.resize(kinds, Vec::new());
+        if kinds > 1 {
+            let rows = self.rows;
+            self.columns.iter_mut().for_each(|(_, own)| own.fill(rows));
+        }
+        self.rows += 1;
         Row {
             table: self,
+            kind,
             next: 0,
         }
     }
@@ -84,7 +139,12 @@ impl Table {
     pub fn to_frame(&self) -> Result<DataFrame, PolarsError> {
         let columns = self.columns.iter().map(|(name, values)| {
             let name = PlSmallStr::from_str(name);
-            match values {
+            // The last row may lack cells of the last columns.
+            let mut filled = Cow::Borrowed(values);
+            if self.kinds.len() > 1 {
+                filled.to_mut().fill(self.rows);
+            }
+            match &*filled {
                 Values::Real(values) => {
                     let present = values
                         .iter()
@@ -94,7 +154,7 @@ impl Table {
                 Values::Count(values) => Series::new(name, values).into_column(),
                 Values::Word(values) => Series::new(name, values).into_column(),
                 Values::Name(values) => {
-                    let names: Vec<&str> = values.iter().map(AsRef::as_ref).collect();
+                    let names: Vec<Option<&str>> = values.iter().map(Option::as_deref).collect();
                     Series::new(name, names).into_column()
                 }
                 Values::Flag(values) => Series::new(name, values).into_column(),

@@ -1,12 +1,12 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
-use super::scores::{Scores, Status, status};
+use super::scores::{GroupScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
-use crate::campaign::{Campaign, Time};
-use crate::draw::AgentDraw;
+use crate::campaign::{AgentGroup, Campaign, Time};
 use crate::draw::quantities::{Condition, Quantity, Source, conditions, quantities};
+use crate::draw::{AgentDraw, AppliedEpisode};
 use crate::model::episode::AgentOutcome;
 use crate::model::inputs::later_onsets;
 use crate::model::metric::{ChannelOutcome, ERROR_METRICS, Metric, OTHER_METRICS};
@@ -23,8 +23,8 @@ pub struct Tables {
     pub scores: Scores,
     /// Names of the controllers, shared by all rows.
     names: Vec<Arc<str>>,
-    /// What is drawn, and what the ranking reads of it.
-    quantities: Vec<Quantity>,
+    /// What is drawn, by group of agents, and what the ranking reads of it.
+    quantities: Vec<Vec<Quantity>>,
     conditions: Vec<Condition>,
 }
 
@@ -44,74 +44,110 @@ impl Tables {
                 .collect(),
             scores: Scores {
                 status: vec![Vec::new(); controllers],
-                rmse: vec![Vec::new(); controllers],
-                max_abs: vec![Vec::new(); controllers],
-                failed_step: vec![Vec::new(); controllers],
-                fault_occurs: vec![Vec::new(); campaign.faults.len()],
+                groups: vec![GroupScores::new(controllers); campaign.groups().len()],
+                fault_occurs: vec![Vec::new(); campaign.faults().count()],
                 conditions: conditions
                     .iter()
                     .map(|condition| (condition.key.clone(), Vec::new()))
                     .collect(),
             },
-            quantities: quantities(campaign),
+            quantities: campaign
+                .groups()
+                .iter()
+                .map(|group| quantities(group))
+                .collect(),
             conditions,
         }
     }
 
-    /// Adds an episode; episodes are added in order.
-    pub fn add(&mut self, campaign: &Campaign, simulated: &EpisodeResult) {
+    /// Adds an episode, of which the result of each group of agents is given; episodes are added in order.
+    pub fn add(&mut self, campaign: &Campaign, simulated: &[&EpisodeResult]) {
         // All rows show the times as they happen.
-        let applied = simulated.episode.applied(campaign);
-        let draws = &applied.agents;
-        for (fault, occurs) in self.scores.fault_occurs.iter_mut().enumerate() {
-            occurs.push(draws.iter().any(|draw| draw.faults[fault].occurs()));
+        let groups = campaign.groups().iter().zip(simulated);
+        let applied: Vec<AppliedEpisode> = groups
+            .map(|(group, simulated)| simulated.episode.applied(group))
+            .collect();
+        let groups = || campaign.groups().iter().zip(&applied);
+        let of_groups = groups().flat_map(|(group, applied)| {
+            let having = |fault| applied.agents.iter().any(|draw| has(draw, fault));
+            (0..group.faults.len()).map(having).collect::<Vec<_>>()
+        });
+        for (occurs, own) in self.scores.fault_occurs.iter_mut().zip(of_groups) {
+            occurs.push(own);
         }
         for ((_, values), condition) in self.scores.conditions.iter_mut().zip(&self.conditions) {
             values.push(condition.of(&applied));
         }
-        for (controller, (name, outcomes)) in self.names.iter().zip(&simulated.outcomes).enumerate()
-        {
-            let agents: Vec<AgentVerdict<'_>> = outcomes
-                .iter()
-                .zip(draws)
-                .map(|(outcome, draw)| AgentVerdict::new(campaign, outcome, draw))
+        for controller in 0..campaign.controllers.len() {
+            let judged: Vec<Vec<AgentVerdict<'_>>> = groups()
+                .zip(simulated)
+                .map(|((group, applied), simulated)| {
+                    let outcomes = simulated.outcomes[controller].iter();
+                    let agents = outcomes.zip(&applied.agents);
+                    agents
+                        .map(|(outcome, draw)| AgentVerdict::new(group, outcome, draw))
+                        .collect()
+                })
                 .collect();
-            let worst = agents
-                .iter()
-                .map(|agent| agent.status)
-                .max()
-                .unwrap_or(Status::Ok);
+            let worst = judged.iter().flatten().map(|agent| agent.status).max();
+            let worst = worst.unwrap_or(Status::Ok);
             self.scores.status[controller].push(worst);
-            self.scores.failed_step[controller]
-                .extend(outcomes.iter().map(|outcome| outcome.failed_step));
-            for ((agent, judged), draw) in (0u64..).zip(&agents).zip(draws) {
-                let key = |row: &mut Row<'_>| {
-                    row.count(|| "episode".into(), u64::from(simulated.episode.index))
-                        .name(|| "controller".into(), name.clone())
-                        .count(|| "agent".into(), agent);
-                };
-                let mut row = self.episodes.row();
-                key(&mut row);
-                if let Some(stratum) = campaign.strata.of(simulated.episode.index) {
-                    row.name(|| "stratum".into(), stratum.name.clone());
-                }
-                if let Some((replicate, _)) = campaign.sampling.place(simulated.episode.index) {
-                    row.count(|| "replicate".into(), u64::from(replicate));
-                }
-                judged.write_agent(&mut row, campaign, worst);
-                write_draw(&mut row, campaign, &self.quantities, draw);
-                let channels = campaign.channels().iter();
-                for (channel, outcome) in channels.zip(&judged.outcome.channels) {
-                    let mut row = self.channels.row();
-                    key(&mut row);
-                    row.name(|| "channel".into(), channel.clone());
-                    judged.write_channel(&mut row, campaign.time, outcome);
-                    self.scores.rmse[controller].push(outcome.rmse);
-                    self.scores.max_abs[controller].push(outcome.max_abs);
-                }
+            for (index, judged) in judged.iter().enumerate() {
+                self.add_group(campaign, index, controller, judged, &applied[index], worst);
             }
         }
     }
+
+    /// Adds the agents of a group under a controller; `worst` is how the episode ended.
+    fn add_group(
+        &mut self,
+        campaign: &Campaign,
+        index: usize,
+        controller: usize,
+        judged: &[AgentVerdict<'_>],
+        applied: &AppliedEpisode,
+        worst: Status,
+    ) {
+        let group = &campaign.groups()[index];
+        let scores = &mut self.scores.groups[index];
+        let own_worst = judged.iter().map(|agent| agent.status).max();
+        scores.status[controller].push(own_worst.unwrap_or(Status::Ok));
+        for (place, (judged, draw)) in judged.iter().zip(&applied.agents).enumerate() {
+            let key = |row: &mut Row<'_>| {
+                row.count(|| "episode".into(), u64::from(applied.index))
+                    .name(|| "controller".into(), self.names[controller].clone());
+                if campaign.has_named_groups() {
+                    row.name(|| "group".into(), group.name.clone());
+                }
+                row.count(|| "agent".into(), (group.first_agent + place) as u64);
+            };
+            let mut row = self.episodes.row_of(index);
+            key(&mut row);
+            if let Some(stratum) = campaign.strata.of(applied.index) {
+                row.name(|| "stratum".into(), stratum.name.clone());
+            }
+            if let Some((replicate, _)) = campaign.sampling.place(applied.index) {
+                row.count(|| "replicate".into(), u64::from(replicate));
+            }
+            judged.write_agent(&mut row, group, worst);
+            write_draw(&mut row, group, &self.quantities[index], draw);
+            scores.failed_step[controller].push(judged.outcome.failed_step);
+            let channels = group.channels().iter();
+            for (channel, outcome) in channels.zip(&judged.outcome.channels) {
+                let mut row = self.channels.row();
+                key(&mut row);
+                row.name(|| "channel".into(), channel.clone());
+                judged.write_channel(&mut row, campaign.time, outcome);
+                scores.rmse[controller].push(outcome.rmse);
+                scores.max_abs[controller].push(outcome.max_abs);
+            }
+        }
+    }
+}
+
+/// Whether an agent has a fault of its group.
+fn has(draw: &AgentDraw, fault: usize) -> bool {
+    draw.faults[fault].occurs()
 }
 
 /// An agent's outcome and what the verdict makes of it.
@@ -123,26 +159,26 @@ struct AgentVerdict<'a> {
 }
 
 impl<'a> AgentVerdict<'a> {
-    fn new(campaign: &Campaign, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
+    fn new(group: &AgentGroup, outcome: &'a AgentOutcome, draw: &AgentDraw) -> Self {
         Self {
             outcome,
-            status: status(campaign, outcome),
-            first_fault: later_onsets(campaign, draw).into_iter().min(),
+            status: status(group, outcome),
+            first_fault: later_onsets(group, draw).into_iter().min(),
         }
     }
 
-    fn write_agent(&self, row: &mut Row<'_>, campaign: &Campaign, worst: Status) {
+    fn write_agent(&self, row: &mut Row<'_>, group: &AgentGroup, worst: Status) {
         let failed_at_s = match (self.status, self.outcome.failed_step) {
             (Status::Ok, _) => None,
-            (_, Some(step)) => Some(f64::from(step) * campaign.time.step_s),
+            (_, Some(step)) => Some(f64::from(step) * group.time.step_s),
             // A limit on the RMS error is judged, and an overflow of a sum is seen, at the end.
-            (_, None) => Some(f64::from(campaign.time.steps) * campaign.time.step_s),
+            (_, None) => Some(f64::from(group.time.steps) * group.time.step_s),
         };
         row.word(|| "status".into(), self.status.word())
             .word(|| "episode_status".into(), worst.word())
             .real_if("failed_at_s", failed_at_s);
-        for ChannelGroup { role, channels } in campaign.channel_groups() {
-            let group = role.name();
+        for ChannelGroup { role, channels } in group.channel_groups() {
+            let role = role.name();
             let channels = &self.outcome.channels[channels];
             let mean_square = channels
                 .iter()
@@ -153,13 +189,13 @@ impl<'a> AgentVerdict<'a> {
                 .iter()
                 .map(|metrics| metrics.max_abs)
                 .fold(0.0, f64::max);
-            row.real(|| format!("rmse_{group}"), self.finite(mean_square.sqrt()))
-                .real(|| format!("max_abs_{group}"), self.finite(largest));
+            row.real(|| format!("rmse_{role}"), self.finite(mean_square.sqrt()))
+                .real(|| format!("max_abs_{role}"), self.finite(largest));
         }
         let all = &self.outcome.channels;
         let slowest = |time: fn(&Self, Time, &ChannelOutcome) -> Option<f64>| {
             all.iter()
-                .map(|metrics| time(self, campaign.time, metrics))
+                .map(|metrics| time(self, group.time, metrics))
                 .try_fold(0.0, |worst, own| own.map(|own| f64::max(worst, own)))
         };
         row.real_if("settling_s", slowest(Self::settling_s))
@@ -219,20 +255,21 @@ impl<'a> AgentVerdict<'a> {
 
 /// Every quantity of an agent as it acts; before those of a fault, whether it occurs and, if it strikes one channel,
 /// which.
-fn write_draw(row: &mut Row<'_>, campaign: &Campaign, quantities: &[Quantity], draw: &AgentDraw) {
+fn write_draw(row: &mut Row<'_>, group: &AgentGroup, quantities: &[Quantity], draw: &AgentDraw) {
     let mut fault = None;
     for quantity in quantities {
         if let Source::Fault(index) = quantity.source
             && fault != Some(index)
         {
             fault = Some(index);
+            let number = group.first_fault + index;
             let drawn = &draw.faults[index];
-            row.flag(|| format!("fault{index}_occurs"), drawn.occurs());
-            if campaign.faults[index].strikes_one() {
+            row.flag(|| format!("fault{number}_occurs"), drawn.occurs());
+            if group.faults[index].strikes_one() {
                 let struck = drawn.only_channel();
-                let struck = struck.map(|channel| campaign.channels()[channel].clone());
+                let struck = struck.map(|channel| group.channels()[channel].clone());
                 row.name(
-                    || format!("fault{index}_channel"),
+                    || format!("fault{number}_channel"),
                     struck.unwrap_or_default(),
                 );
             }
@@ -240,7 +277,7 @@ fn write_draw(row: &mut Row<'_>, campaign: &Campaign, quantities: &[Quantity], d
         let key = &quantity.key;
         let cells = quantity.cells(draw);
         if quantity.is_of_channels() {
-            for (value, channel) in cells.zip(campaign.channels()) {
+            for (value, channel) in cells.zip(group.channels()) {
                 row.real(|| format!("{key}_{channel}"), value);
             }
         } else {

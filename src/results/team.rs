@@ -1,12 +1,13 @@
 //! A metric of a team's episode, from those of its agents and channels.
 
-use super::scores::{Scores, Status};
-use crate::campaign::Campaign;
+use super::scores::{GroupScores, Scores, Status};
+use crate::campaign::{Campaign, ChannelsOfCampaign};
 use crate::statistics::rms;
 use std::ops::Range;
 
-/// Where the values of some channels of a team's episode lie in a list of [`Scores`].
+/// Where the values of some channels of a team's episode lie in a list of [`GroupScores`].
 pub(super) struct Layout {
+    group: usize,
     team: usize,
     /// Channels of an agent.
     width: usize,
@@ -14,12 +15,24 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(campaign: &Campaign, channels: Range<usize>) -> Self {
+    pub(super) fn new(campaign: &Campaign, of: &ChannelsOfCampaign) -> Self {
+        Self::of_channels(campaign, of.group, of.channels.clone())
+    }
+
+    /// Of any channels of a group of agents.
+    pub(super) fn of_channels(campaign: &Campaign, group: usize, channels: Range<usize>) -> Self {
+        let own = &campaign.groups()[group];
         Self {
-            team: campaign.team,
-            width: campaign.channels().len(),
+            group,
+            team: own.team,
+            width: own.channels().len(),
             channels,
         }
+    }
+
+    /// The scores of the group.
+    pub(super) fn scores<'a>(&self, scores: &'a Scores) -> &'a GroupScores {
+        &scores.groups[self.group]
     }
 
     /// The values of an episode, agent by agent.
@@ -40,9 +53,10 @@ impl Layout {
 
 /// RMS error of each episode over the team and the channels; infinite where an agent diverged.
 pub(super) fn team_rmse(scores: &Scores, controller: usize, layout: &Layout) -> Vec<f64> {
-    let of_episode = |episode: usize| match scores.status[controller][episode] {
+    let own = layout.scores(scores);
+    let of_episode = |episode: usize| match own.status[controller][episode] {
         Status::Diverged => f64::INFINITY,
-        _ => rms(layout.of(&scores.rmse[controller], episode)),
+        _ => rms(layout.of(&own.rmse[controller], episode)),
     };
     (0..scores.episodes()).map(of_episode).collect()
 }

@@ -1,6 +1,6 @@
 //! Which stratum hurts each controller most, in sentences.
 
-use super::screening::{FaultEffect, Screening};
+use super::screening::{FaultEffect, Growth, Screening};
 use crate::statistics::Estimate;
 
 /// Names that a sentence lists.
@@ -62,8 +62,15 @@ fn by_growth(screening: &Screening) -> Vec<String> {
     };
     let of_group = |(group, most): (usize, &Vec<usize>)| {
         let top = &screening.harms[*most.first()?];
-        let (name, growth) = top.growth.get(group)?;
-        let known = |harm: &FaultEffect| harm.growth.get(group).is_some_and(|own| own.1.is_some());
+        let Growth {
+            group: name,
+            log_growth,
+            ..
+        } = top.growth.get(group)?;
+        let known = |harm: &FaultEffect| {
+            let own = harm.growth.get(group);
+            own.is_some_and(|own| own.log_growth.is_some())
+        };
         if !screening.harms.iter().any(known) {
             let too_few = "too few episodes in each stratum to tell which fault makes it grow most";
             return Some(format!("RMS error, {name}: {too_few}"));
@@ -71,7 +78,7 @@ fn by_growth(screening: &Screening) -> Vec<String> {
         Some(format!(
             "RMS error, {name}, grows most with {:?}: {}{}",
             top.stratum,
-            change(screening, *growth, &times),
+            change(screening, *log_growth, &times),
             apart(screening, most)
         ))
     };

@@ -8,6 +8,7 @@ use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::stopping::Stopped;
 use crate::simulation::{Segment, Times};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Everything about a run that its tables do not say.
@@ -29,8 +30,11 @@ pub struct Manifest {
     /// The settings laid over it with `--set`, in their order; absent if there were none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overlay: Vec<Setting>,
-    /// The text of the robot's file, where there are robots.
+    /// The text of the robot's file, where there are robots; of a campaign with `[[group]]` see `robots`.
     pub robot: Option<String>,
+    /// Of a campaign with `[[group]]`, the text of the robot's file of each group of robots, by its name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub robots: BTreeMap<String, String>,
     /// Seed that was used: the campaign's, unless it was overridden.
     pub seed: u64,
     /// Episodes that were simulated.
@@ -102,11 +106,14 @@ impl Manifest {
     /// # Errors
     /// If this version does not read the campaign any more.
     pub fn campaign(&self) -> Result<Campaign, CampaignError> {
-        let campaign = Campaign::parse_with_robot(
+        let campaign = Campaign::parse_with_robots(
             &self.campaign,
             Path::new(&self.campaign_path),
             &self.overlay,
-            self.robot.as_deref(),
+            &|group| match group {
+                "" => self.robot.clone(),
+                name => self.robots.get(name).cloned(),
+            },
         )?;
         // What a design draws belongs to the number of episodes that was asked for.
         campaign

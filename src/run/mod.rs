@@ -11,13 +11,15 @@ mod tables;
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;
 use crate::controllers::{GainSet, GainsError};
+use crate::results::Results;
 use crate::results::files::Found;
-use crate::results::{Results, harm, verdict};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
 use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, open, simulate};
 use directory::OutputDir;
 use error::{MANIFEST, OutputError};
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 use thiserror::Error;
@@ -54,10 +56,11 @@ pub enum RunError {
     Manifest(#[from] serde_json::Error),
 }
 
-/// What a run found.
-#[derive(Debug)]
+/// What a run found; for programs it is written as it stands here.
+#[derive(Debug, Serialize)]
 pub struct Findings {
     /// The statistics.
+    #[serde(flatten)]
     pub results: Results,
     /// How it was found.
     pub manifest: Manifest,
@@ -133,7 +136,7 @@ pub fn run_on(
 ) -> Result<Findings, RunError> {
     let start = Instant::now();
     progress(Progress::Gains);
-    let gains = GainSet::synthesize_or_load(campaign)?;
+    let gains = GainSet::of_groups(campaign)?;
     let synthesis_s = start.elapsed().as_secs_f64();
 
     progress(Progress::Simulation);
@@ -173,6 +176,7 @@ pub fn run_on(
     progress(Progress::Writing);
     let found = Found::new(campaign, &tables, &results);
     times.writing_s = write_tables(found, &gains, extras.csv, out)?;
+    let mut robots = robots(campaign);
     let manifest = Manifest {
         name: campaign.name.clone(),
         version: env!("CARGO_PKG_VERSION").to_string(),
@@ -181,13 +185,14 @@ pub fn run_on(
         campaign_blake3: campaign_hash(campaign),
         campaign: campaign.text.clone(),
         overlay: campaign.overlay.clone(),
-        robot: campaign.agent.file().map(|file| file.text.clone()),
+        robot: robots.remove(""),
+        robots,
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,
         stopped: stopping.found(campaign),
-        verdict: verdict(&results.summary, &results.comparisons),
-        harm: harm(&results.screenings),
+        verdict: results.verdict.clone(),
+        harm: results.harm.clone(),
         requirements: results.requirements.clone(),
         interrupted: interrupted.map(|error| error.to_string()),
         precision: options.precision,
@@ -201,17 +206,28 @@ pub fn run_on(
     Ok(Findings { results, manifest })
 }
 
+/// The text of the robot's file of each group of robots, by the group's name.
+fn robots(campaign: &Campaign) -> BTreeMap<String, String> {
+    let groups = campaign.groups().iter();
+    groups
+        .filter_map(|group| Some((group.name.to_string(), group.agent.file()?.text.clone())))
+        .collect()
+}
+
 /// Writes all but the manifest; returns the time that it took, s.
 fn write_tables(
     found: Found<'_>,
-    gains: &GainSet,
+    gains: &[GainSet],
     csv: bool,
     out: &OutputDir,
 ) -> Result<f64, RunError> {
     let start = Instant::now();
     out.begin()?;
     tables::write(found, csv, out)?;
-    out.write("gains.json", &pretty(&gains.to_file(found.campaign))?)?;
+    out.write(
+        "gains.json",
+        &pretty(&GainSet::to_file(found.campaign, gains))?,
+    )?;
     Ok(start.elapsed().as_secs_f64())
 }
 
@@ -239,7 +255,7 @@ fn unless_more_is_there(
 /// there should be.
 fn checked(
     campaign: &Campaign,
-    gains: &GainSet,
+    gains: &[GainSet],
     options: &RunOptions,
     gpu: Option<&Gpu>,
     simulation: &Simulation,
@@ -265,7 +281,7 @@ fn checked(
     }
 }
 
-fn pretty(value: &impl serde::Serialize) -> Result<Vec<u8>, serde_json::Error> {
+fn pretty(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');
     Ok(bytes)

@@ -3,14 +3,15 @@
 use super::error::{MANIFEST, OutputError};
 use super::manifest::Manifest;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::backend::gpu::{Adapter, Gpu, GpuSimulator, Tuning, Wanted};
-use crate::campaign::{Campaign, CampaignError};
+use crate::backend::gpu::{Adapter, Gpu, GpuError, Tuning, Wanted};
+use crate::campaign::{AgentGroup, Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::results::table::Table;
 use crate::simulation::Engine;
 use crate::simulation::attenuation::{AttenuationAnalysis, Attenuations};
+use crate::simulation::group_simulators::{GroupSimulators, GroupTrace};
 use crate::util::suggest::did_you_mean;
 use std::path::Path;
 use thiserror::Error;
@@ -100,15 +101,11 @@ pub fn replay(
         .segments
         .iter()
         .find(|segment| (segment.first..segment.first + segment.episodes).contains(&episode));
-    let simulate_one = |precision, simd, controller, every| {
-        let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
-        cpu.trace(episode, controller, every)
-    };
-    let simulate = |precision, simd| -> Vec<Trajectory> {
-        let controllers = 0..campaign.controllers.len();
-        controllers
-            .map(|controller| simulate_one(precision, simd, controller, every))
-            .collect()
+    let simulate = |precision, simd| {
+        let loops = GainSet::loops_of(&gains);
+        let mut simulators = GroupSimulators::on_cpu(&campaign, &loops, precision, simd);
+        // Nothing on the CPU fails.
+        traced(&mut simulators, &campaign, episode, every).unwrap_or_default()
     };
     // The reference, where what simulated the run is not to be had.
     let stand_in = |reason: String| (simulate(Precision::F64, None), Some(reason));
@@ -148,10 +145,8 @@ pub fn replay(
         snapshots,
         ..
     } = others.remove(index);
-    let analysis = AttenuationAnalysis::new(&campaign, &gains, index);
-    let attenuations =
-        analysis.of_episode(episode, || simulate_one(Precision::F64, None, index, 1).1);
     Ok(Replay {
+        attenuations: attenuations(&campaign, &gains, episode, index),
         campaign,
         episode,
         controller: index,
@@ -159,8 +154,25 @@ pub fn replay(
         outcomes,
         snapshots,
         others,
-        attenuations,
     })
+}
+
+/// What (24) says about the agents of all groups under a controller.
+fn attenuations(
+    campaign: &Campaign,
+    gains: &[GainSet],
+    episode: u32,
+    controller: usize,
+) -> Attenuations {
+    let groups = campaign.groups().iter().zip(gains);
+    let of_group = |(group, gains): (&AgentGroup, &GainSet)| {
+        let analysis = AttenuationAnalysis::new(group, gains, controller);
+        analysis.of_episode(episode, || {
+            let cpu = Cpu::new(group, &gains.loops(), Precision::F64, None);
+            cpu.trace(episode, controller, 1).1
+        })
+    };
+    groups.flat_map(of_group).collect()
 }
 
 /// The command that replays an episode of a run in a directory, as it is typed into a shell.
@@ -196,7 +208,7 @@ type Trajectory = (Vec<AgentOutcome>, Vec<Snapshot>);
 fn on_gpu(
     adapter: &Adapter,
     campaign: &Campaign,
-    gains: &GainSet,
+    gains: &[GainSet],
     episode: u32,
     every: u32,
 ) -> Result<Vec<Trajectory>, String> {
@@ -205,25 +217,35 @@ fn on_gpu(
         batch: Some(1),
         ..Tuning::default()
     };
-    let mut simulator = GpuSimulator::new(&gpu, campaign, &gains.loops(), tuning)
+    let mut simulators = GroupSimulators::on_gpu(&gpu, campaign, &GainSet::loops_of(gains), tuning)
         .map_err(|error| error.to_string())?;
-    let mut snapshots: Vec<Vec<Snapshot>> = vec![Vec::new(); campaign.controllers.len()];
-    let simulated = simulator
-        .trace(&[episode], every, &mut |instant| {
-            for (controller, snapshots) in snapshots.iter_mut().enumerate() {
-                snapshots.push(Snapshot {
-                    step: instant.step,
-                    agents: instant.agents(0, controller),
-                    internals: Vec::new(),
-                });
+    traced(&mut simulators, campaign, episode, every).map_err(|error| error.to_string())
+}
+
+/// An episode under all controllers, with the agents of all groups one after the other.
+fn traced(
+    simulators: &mut GroupSimulators<'_>,
+    campaign: &Campaign,
+    episode: u32,
+    every: u32,
+) -> Result<Vec<Trajectory>, GpuError> {
+    let controllers = campaign.controllers.len();
+    let traced = simulators.trace(&[episode], controllers, every, &Snapshot::clone)?;
+    let of_controller = |groups: Vec<GroupTrace<Snapshot>>| {
+        let mut groups = groups.into_iter();
+        let first = groups.next();
+        let (mut outcomes, mut snapshots) =
+            first.map_or_else(Default::default, |first| (first.outcomes, first.kept));
+        for group in groups {
+            outcomes.extend(group.outcomes);
+            for (all, own) in snapshots.iter_mut().zip(group.kept) {
+                all.agents.extend(own.agents);
+                all.internals.extend(own.internals);
             }
-        })
-        .map_err(|error| error.to_string())?;
-    let simulated = simulated.into_iter().next();
-    let outcomes = simulated
-        .ok_or("the adapter sent no episode back")?
-        .outcomes;
-    Ok(outcomes.into_iter().zip(snapshots).collect())
+        }
+        (outcomes, snapshots)
+    };
+    Ok(traced.into_iter().flatten().map(of_controller).collect())
 }
 
 fn no_such_episode(episode: u32, episodes: u32) -> ReplayError {
@@ -291,8 +313,9 @@ impl Replay {
     pub fn table(&self) -> Table {
         let mut table = Table::default();
         for snapshot in &self.snapshots {
-            for (agent, channels) in (0u64..).zip(&snapshot.agents) {
-                for (channel, shown) in self.campaign.channels().iter().zip(channels) {
+            for (agent, channels) in snapshot.agents.iter().enumerate() {
+                let (group, _) = self.campaign.member(agent);
+                for (channel, shown) in group.channels().iter().zip(channels) {
                     let ChannelSample {
                         r,
                         x,
@@ -310,7 +333,7 @@ impl Replay {
                         || "t_s".into(),
                         f64::from(snapshot.step) * self.campaign.time.step_s,
                     )
-                    .count(|| "agent".into(), agent)
+                    .count(|| "agent".into(), agent as u64)
                     .name(|| "channel".into(), channel.clone());
                     for (name, value) in [
                         ("r", r),

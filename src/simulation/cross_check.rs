@@ -1,10 +1,10 @@
 //! Some episodes of a run again on the CPU in double precision: whether the run may be trusted.
 
 use super::attenuation::{AttenuationAnalysis, Attenuations, GroupAttenuation};
+use super::group_simulators::{GroupSimulators, GroupTrace, trace_on_cpu};
 use super::{Engine, RunOptions, Segment};
-use crate::backend::EpisodeResult;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning};
+use crate::backend::gpu::{Gpu, GpuError, Tuning};
 use crate::campaign::{Campaign, Verdict};
 use crate::controllers::GainSet;
 use crate::model::ChannelSample;
@@ -90,7 +90,7 @@ impl CrossCheck {
 /// If the GPU fails.
 pub fn cross_check(
     campaign: &Campaign,
-    gains: &GainSet,
+    gains: &[GainSet],
     options: &RunOptions,
     segment: &Segment,
     scores: &Scores,
@@ -99,39 +99,39 @@ pub fn cross_check(
 ) -> Result<CrossCheck, GpuError> {
     let episodes = choose(campaign.seed, segment, count);
     let every = campaign.time.steps.div_ceil(SAMPLES);
-    let loops = gains.loops();
-    let reference = Cpu::new(campaign, &loops, Precision::F64, None);
+    let loops = GainSet::loops_of(gains);
+    let controllers = campaign.controllers.len();
+    let in_f64 = |loops: &[Vec<Vec<LoopGains>>]| -> Vec<Cpu> {
+        let groups = campaign.groups().iter().zip(loops);
+        let cpu = groups.map(|(group, loops)| Cpu::new(group, loops, Precision::F64, None));
+        cpu.collect()
+    };
+    let reference = in_f64(&loops);
     // Built only when it is needed.
-    let nudged = LazyCell::new(|| Cpu::new(campaign, &nudged(&loops), Precision::F64, None));
+    let nudged = LazyCell::new(|| in_f64(&nudged(&loops)));
     let mut engine = match (&segment.engine, gpu) {
         (Engine::Gpu { .. }, Some(gpu)) => {
             let tuning = Tuning {
                 batch: u32::try_from(episodes.len()).ok(),
                 ..options.tuning
             };
-            Tracer::Gpu(Box::new(GpuSimulator::new(gpu, campaign, &loops, tuning)?))
+            GroupSimulators::on_gpu(gpu, campaign, &loops, tuning)?
         }
-        _ => Tracer::Cpu(Box::new(Cpu::new(
-            campaign,
-            &loops,
-            options.precision,
-            options.simd,
-        ))),
+        _ => GroupSimulators::on_cpu(campaign, &loops, options.precision, options.simd),
     };
     let mut check = CrossCheck {
         episodes: episodes.clone(),
         attenuation: attenuation(campaign, gains, &reference, &episodes),
         ..CrossCheck::default()
     };
+    let mut reference = GroupSimulators::Cpu(reference);
     for episodes in episodes.chunks(CHUNK) {
-        let found = match &mut engine {
-            Tracer::Gpu(simulator) => trace_on_gpu(simulator, episodes, loops.len(), every)?,
-            Tracer::Cpu(cpu) => trace_on_cpu(cpu, episodes, loops.len(), every),
-        };
-        let expected = trace_on_cpu(&reference, episodes, loops.len(), every);
+        let found = engine.trace(episodes, controllers, every, &errors)?;
+        let expected = reference.trace(episodes, controllers, every, &errors)?;
         for (&episode, found) in episodes.iter().zip(&found) {
             let repeated = |(controller, traced): (usize, &Traced)| {
-                scores.holds(campaign, controller, episode, &traced.outcomes)
+                let mut groups = scores.groups.iter().zip(traced);
+                groups.all(|(scores, traced)| scores.holds(controller, episode, &traced.outcomes))
             };
             let pairs = found.iter().enumerate();
             check.not_repeated += pairs.filter(|&pair| !repeated(pair)).count();
@@ -139,7 +139,7 @@ pub fn cross_check(
         for (&episode, (found, expected)) in episodes.iter().zip(found.iter().zip(&expected)) {
             for (controller, (found, expected)) in found.iter().zip(expected).enumerate() {
                 check.take(campaign, found, expected, || {
-                    trace(&nudged, episode, controller, every)
+                    trace_on_cpu(&nudged, episode, controller, every, &errors)
                 });
             }
         }
@@ -150,96 +150,52 @@ pub fn cross_check(
 /// What inequality (24) says about some episodes under each controller that has a certificate.
 fn attenuation(
     campaign: &Campaign,
-    gains: &GainSet,
-    reference: &Cpu,
+    gains: &[GainSet],
+    reference: &[Cpu],
     episodes: &[u32],
 ) -> Vec<GroupAttenuation> {
-    let controllers = gains.controllers.iter().enumerate();
-    let certified = controllers.filter(|(_, controller)| controller.is_certified());
-    let of_controller = |(index, _)| {
-        let analysis = AttenuationAnalysis::new(campaign, gains, index);
-        let of_episode =
-            |&episode: &u32| analysis.of_episode(episode, || reference.trace(episode, index, 1).1);
-        let chunks = episodes.chunks(WHOLE);
-        let attenuations: Vec<Attenuations> = chunks
-            .flat_map(|chunk| chunk.par_iter().map(of_episode).collect::<Vec<_>>())
-            .collect();
-        analysis.by_group(&attenuations)
+    let of_controller = |index: usize| {
+        let groups = campaign.groups().iter().zip(gains).zip(reference);
+        let certified =
+            groups.filter(move |((_, gains), _)| gains.controllers[index].is_certified());
+        certified.flat_map(move |((group, gains), reference)| {
+            let analysis = AttenuationAnalysis::new(group, gains, index);
+            let of_episode = |&episode: &u32| {
+                analysis.of_episode(episode, || reference.trace(episode, index, 1).1)
+            };
+            let chunks = episodes.chunks(WHOLE);
+            let attenuations: Vec<Attenuations> = chunks
+                .flat_map(|chunk| chunk.par_iter().map(of_episode).collect::<Vec<_>>())
+                .collect();
+            analysis.by_group(&attenuations)
+        })
     };
-    certified.flat_map(of_controller).collect()
+    (0..campaign.controllers.len())
+        .flat_map(of_controller)
+        .collect()
 }
 
-/// What flies the episodes that are checked.
-enum Tracer<'g> {
-    Gpu(Box<GpuSimulator<'g>>),
-    Cpu(Box<Cpu>),
-}
+/// One episode under one controller, group by group: how the agents ended, and e at some instants.
+type Traced = Vec<GroupTrace<Errors>>;
 
-/// One episode under one controller: how its agents ended, and e at some instants, `[instant][agent][channel]`.
-#[derive(Clone)]
-struct Traced {
-    outcomes: Vec<AgentOutcome>,
-    errors: Vec<Vec<Vec<f64>>>,
-}
+/// e at an instant, `[agent][channel]`.
+type Errors = Vec<Vec<f64>>;
 
-fn errors(agents: &[Vec<ChannelSample>]) -> Vec<Vec<f64>> {
+fn errors(snapshot: &Snapshot) -> Errors {
     let of_agent = |channels: &Vec<ChannelSample>| channels.iter().map(|shown| shown.e).collect();
-    agents.iter().map(of_agent).collect()
-}
-
-/// `[episode][controller]`.
-fn trace_on_cpu(cpu: &Cpu, episodes: &[u32], controllers: usize, every: u32) -> Vec<Vec<Traced>> {
-    let of_episode = |&episode: &u32| {
-        let under = |controller| trace(cpu, episode, controller, every);
-        (0..controllers).map(under).collect()
-    };
-    episodes.par_iter().map(of_episode).collect()
-}
-
-fn trace(cpu: &Cpu, episode: u32, controller: usize, every: u32) -> Traced {
-    let (outcomes, snapshots) = cpu.trace(episode, controller, every);
-    let shown = |snapshot: &Snapshot| errors(&snapshot.agents);
-    Traced {
-        outcomes,
-        errors: snapshots.iter().map(shown).collect(),
-    }
+    snapshot.agents.iter().map(of_agent).collect()
 }
 
 /// Feedback gains that are [`NUDGE`] larger.
-fn nudged(loops: &[Vec<LoopGains>]) -> Vec<Vec<LoopGains>> {
+fn nudged(loops: &[Vec<Vec<LoopGains>>]) -> Vec<Vec<Vec<LoopGains>>> {
     let mut nudged = loops.to_vec();
-    for own in nudged.iter_mut().flatten() {
+    for own in nudged.iter_mut().flatten().flatten() {
         own.k = own.k.map(|k| k * (1.0 + NUDGE));
     }
     nudged
 }
 
-/// `[episode][controller]`.
-fn trace_on_gpu(
-    simulator: &mut GpuSimulator<'_>,
-    episodes: &[u32],
-    controllers: usize,
-    every: u32,
-) -> Result<Vec<Vec<Traced>>, GpuError> {
-    let mut seen: Vec<Vec<Vec<Vec<Vec<f64>>>>> =
-        vec![vec![Vec::new(); controllers]; episodes.len()];
-    let simulated: Vec<EpisodeResult> = simulator.trace(episodes, every, &mut |instant| {
-        for (episode, seen) in seen.iter_mut().enumerate() {
-            for (controller, seen) in seen.iter_mut().enumerate() {
-                seen.push(errors(&instant.agents(episode, controller)));
-            }
-        }
-    })?;
-    let of_episode = |(simulated, seen): (EpisodeResult, Vec<_>)| {
-        let pairs = simulated.outcomes.into_iter().zip(seen);
-        pairs
-            .map(|(outcomes, errors)| Traced { outcomes, errors })
-            .collect()
-    };
-    Ok(simulated.into_iter().zip(seen).map(of_episode).collect())
-}
-
-/// Distinct episodes of a leg, drawn evenly, in ascending order.
+/// Distinct episodes of a segment, drawn evenly, in ascending order.
 fn choose(seed: u64, segment: &Segment, count: u32) -> Vec<u32> {
     let count = count.min(segment.episodes) as usize;
     let mut chosen = BTreeSet::new();
@@ -274,31 +230,36 @@ impl CrossCheck {
         expected: &Traced,
         nudged: impl FnOnce() -> Traced,
     ) {
+        let groups = || campaign.groups().iter().zip(found.iter().zip(expected));
         let worst = |traced: &Traced| {
-            let each = traced.outcomes.iter().map(|agent| status(campaign, agent));
-            each.max().unwrap_or(Status::Ok)
+            let groups = campaign.groups().iter().zip(traced);
+            let agents = groups.flat_map(|(group, traced)| {
+                traced
+                    .outcomes
+                    .iter()
+                    .map(move |agent| status(group, agent))
+            });
+            agents.max().unwrap_or(Status::Ok)
         };
         let (own, reference) = (worst(found), worst(expected));
         if own != reference {
             self.verdicts_differ += 1;
         }
-        let agents = found.outcomes.iter().zip(&expected.outcomes);
-        let mut near = agents.flat_map(|(found, expected)| {
-            [
-                near_threshold(&campaign.verdict, found),
-                near_threshold(&campaign.verdict, expected),
-            ]
+        let near = groups().any(|(group, (found, expected))| {
+            let mut agents = found.outcomes.iter().chain(&expected.outcomes);
+            agents.any(|agent| near_threshold(&group.verdict, agent))
         });
         // A loop that grows leaves the numbers earlier in single precision: both fail, one is said to diverge.
         let one_fails = (own == Status::Ok) != (reference == Status::Ok);
-        let clearly = one_fails && !near.any(|near| near);
+        let clearly = one_fails && !near;
         // Demands beyond limits that cut nothing are counted too, but change no trajectory.
-        let saturated = |traced: &Traced| {
-            let mut channels = traced.outcomes.iter().flat_map(|agent| &agent.channels);
-            campaign.is_limited() && channels.any(|channel| channel.saturated_fraction > 0.0)
-        };
+        let saturated = groups().any(|(group, (found, expected))| {
+            let agents = found.outcomes.iter().chain(&expected.outcomes);
+            let mut channels = agents.flat_map(|agent| &agent.channels);
+            group.is_limited() && channels.any(|channel| channel.saturated_fraction > 0.0)
+        });
         let calm = own == Status::Ok && reference == Status::Ok;
-        let compared = calm && !saturated(found) && !saturated(expected);
+        let compared = calm && !saturated;
         let difference = Difference::between(found, expected);
         // What leaves the numbers grows without bound, which a nudge does not excuse.
         let bounded = own != Status::Diverged && reference != Status::Diverged;
@@ -329,11 +290,17 @@ struct Difference {
 
 impl Difference {
     fn between(found: &Traced, expected: &Traced) -> Self {
-        let instants = found.errors.iter().flatten().flatten();
-        let instants = instants.zip(expected.errors.iter().flatten().flatten());
+        let errors = |traced: &Traced| {
+            let instants = traced.iter().flat_map(|group| &group.kept);
+            let errors = instants.flatten().flatten();
+            errors.copied().collect::<Vec<f64>>()
+        };
+        let (of_own, of_reference) = (errors(found), errors(expected));
+        let instants = of_own.iter().zip(&of_reference);
         let at_instants = instants.map(|(own, reference)| size(own - reference));
         let channels = |traced: &Traced| {
-            let channels = traced.outcomes.iter().flat_map(|agent| &agent.channels);
+            let agents = traced.iter().flat_map(|group| &group.outcomes);
+            let channels = agents.flat_map(|agent| &agent.channels);
             channels.copied().collect::<Vec<_>>()
         };
         let (own, reference) = (channels(found), channels(expected));
@@ -380,22 +347,25 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn smoke() -> (Campaign, Vec<Vec<LoopGains>>) {
+    /// Episodes of the campaign in double precision, with its gains and with larger ones.
+    fn smoke() -> (Campaign, [Vec<Cpu>; 2]) {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/smoke.toml");
         let campaign = Campaign::load(&path).unwrap();
-        let loops = GainSet::synthesize_or_load(&campaign).unwrap().loops();
-        (campaign, loops)
+        let loops = GainSet::loops_of(&GainSet::of_groups(&campaign).unwrap());
+        let cpu = [&loops, &nudged(&loops)].map(|loops| {
+            let group = campaign.first_group();
+            vec![Cpu::new(group, &loops[0], Precision::F64, None)]
+        });
+        (campaign, cpu)
     }
 
     #[test]
-    fn ordinary_flights_hardly_feel_a_nudge() {
-        let (campaign, loops) = smoke();
-        let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
-        let nudged = Cpu::new(&campaign, &nudged(&loops), Precision::F64, None);
+    fn ordinary_episodes_hardly_feel_a_nudge() {
+        let (campaign, cpu) = smoke();
         for episode in 0..6 {
-            for controller in 0..loops.len() {
-                let [own, moved] =
-                    [&reference, &nudged].map(|cpu| trace(cpu, episode, controller, 10));
+            for controller in 0..campaign.controllers.len() {
+                let trace = |cpu: &Vec<Cpu>| trace_on_cpu(cpu, episode, controller, 10, &errors);
+                let [own, moved] = cpu.each_ref().map(trace);
                 let difference = Difference::between(&moved, &own);
                 // A PID's error goes with its gains, so that the RMS error changes by about 1e-6 of itself: far from a
                 // tenth of the limit of 1e-4.
@@ -407,12 +377,11 @@ mod tests {
 
     #[test]
     fn a_difference_is_excused_where_the_reference_is_as_sensitive_and_nowhere_else() {
-        let (campaign, loops) = smoke();
-        let reference = Cpu::new(&campaign, &loops, Precision::F64, None);
-        let expected = trace(&reference, 0, 0, 10);
+        let (campaign, [cpu, _]) = smoke();
+        let expected = trace_on_cpu(&cpu, 0, 0, 10, &errors);
         let off_by = |difference: f64| {
             let mut moved = expected.clone();
-            moved.errors[40][1][2] += difference;
+            moved[0].kept[40][1][2] += difference;
             moved
         };
         let taken = |found: &Traced, nudged: &dyn Fn() -> Traced| {
@@ -430,8 +399,8 @@ mod tests {
         assert!(sensitive.holds() && sensitive.compared == 0 && sensitive.sensitive == 1);
         // The same of verdicts that differ; but not of an episode that leaves the numbers.
         let mut failed = expected.clone();
-        failed.outcomes[1].channels[2].max_abs = 9.0;
-        failed.outcomes[1].failed_step = Some(2000);
+        failed[0].outcomes[1].channels[2].max_abs = 9.0;
+        failed[0].outcomes[1].failed_step = Some(2000);
         let moved = || off_by(0.11 * ERROR_LIMIT);
         let still = taken(&failed, &|| expected.clone());
         assert_eq!((still.verdicts_differ_clearly, still.sensitive), (1, 0));
@@ -444,7 +413,7 @@ mod tests {
             ),
             (1, 0, 1)
         );
-        failed.outcomes[1].diverged = true;
+        failed[0].outcomes[1].diverged = true;
         assert_eq!(taken(&failed, &moved).verdicts_differ_clearly, 1);
     }
 }

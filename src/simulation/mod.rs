@@ -2,18 +2,20 @@
 
 pub mod attenuation;
 pub mod cross_check;
+pub(crate) mod group_simulators;
 pub mod stopping;
 mod times;
 
 pub use times::Times;
 
 use crate::backend::EpisodeResult;
-use crate::backend::cpu::{Cpu, Precision, Simd};
-use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuSimulator, GpuTimes, Tuning, Wanted};
+use crate::backend::cpu::{Precision, Simd};
+use crate::backend::gpu::{Adapter, Gpu, GpuError, GpuTimes, Tuning, Wanted};
 use crate::campaign::Campaign;
 use crate::controllers::GainSet;
 use crate::results::scores::Status;
 use crate::results::tables::Tables;
+use group_simulators::GroupSimulators;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -105,7 +107,7 @@ pub struct Segment {
     pub engine: Engine,
 }
 
-/// What flies episodes.
+/// What simulates episodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "backend", rename_all = "lowercase")]
 pub enum Engine {
@@ -208,7 +210,7 @@ pub fn open(options: &RunOptions) -> Result<(Option<Gpu>, Vec<String>), Simulati
 /// why.
 pub fn simulate(
     campaign: &Campaign,
-    gains: &GainSet,
+    gains: &[GainSet],
     options: &RunOptions,
     gpu: Option<&Gpu>,
     done: &(dyn Fn(u32) + Sync),
@@ -268,13 +270,15 @@ impl Simulation {
         &mut self,
         gpu: &Gpu,
         campaign: &Campaign,
-        gains: &GainSet,
+        gains: &[GainSet],
         options: &RunOptions,
         done: &(dyn Fn(u32) + Sync),
     ) -> Option<GpuError> {
         let start = Instant::now();
-        let mut simulator = match GpuSimulator::new(gpu, campaign, &gains.loops(), options.tuning) {
-            Ok(simulator) => simulator,
+        let loops = GainSet::loops_of(gains);
+        let on_gpu = GroupSimulators::on_gpu(gpu, campaign, &loops, options.tuning);
+        let mut simulators = match on_gpu {
+            Ok(simulators) => simulators,
             Err(error) => return Some(error),
         };
         self.times.loop_s += start.elapsed().as_secs_f64();
@@ -285,7 +289,7 @@ impl Simulation {
         let seen = &enough;
         // The tables take in a batch while the next one is simulated; at most one waits, so memory stays small.
         std::thread::scope(|scope| {
-            let (sender, batches) = mpsc::sync_channel::<Vec<EpisodeResult>>(1);
+            let (sender, batches) = mpsc::sync_channel::<Vec<Vec<EpisodeResult>>>(1);
             let filling = scope.spawn(move || {
                 let mut spent_s = 0.0;
                 for batch in batches {
@@ -297,10 +301,10 @@ impl Simulation {
             let more = || !enough.load(Ordering::Relaxed);
             while next < campaign.episodes && failure.is_none() && more() {
                 let until = next
-                    .saturating_add(simulator.batch())
+                    .saturating_add(simulators.batch())
                     .min(campaign.episodes);
                 let start = Instant::now();
-                let simulated = pool.install(|| simulator.simulate(next..until, done));
+                let simulated = pool.install(|| simulators.simulate(&(next..until), done));
                 times.loop_s += start.elapsed().as_secs_f64();
                 match simulated.map(|simulated| sender.send(simulated)) {
                     Ok(Ok(())) => next = until,
@@ -321,8 +325,8 @@ impl Simulation {
                 episodes,
                 engine: Engine::Gpu {
                     adapter: gpu.adapter().clone(),
-                    batch: simulator.batch(),
-                    gpu_times: simulator.times(),
+                    batch: simulators.batch(),
+                    gpu_times: simulators.gpu_times(),
                 },
             });
         }
@@ -333,7 +337,7 @@ impl Simulation {
     fn on_cpu(
         &mut self,
         campaign: &Campaign,
-        gains: &GainSet,
+        gains: &[GainSet],
         options: &RunOptions,
         done: &(dyn Fn(u32) + Sync),
     ) {
@@ -342,7 +346,9 @@ impl Simulation {
             return;
         }
         let start = Instant::now();
-        let cpu = Cpu::new(campaign, &gains.loops(), options.precision, options.simd);
+        let loops = GainSet::loops_of(gains);
+        let mut simulators =
+            GroupSimulators::on_cpu(campaign, &loops, options.precision, options.simd);
         self.times.loop_s += start.elapsed().as_secs_f64();
         let batch = match &campaign.stop {
             None => CPU_BATCH,
@@ -353,7 +359,9 @@ impl Simulation {
         while next < campaign.episodes && !self.stopping.is_done() {
             let until = next.saturating_add(batch).min(campaign.episodes);
             let start = Instant::now();
-            let simulated = self.pool.install(|| cpu.simulate(next..until, done));
+            let simulate = || simulators.simulate(&(next..until), done);
+            // Nothing on the CPU fails.
+            let simulated = self.pool.install(simulate).unwrap_or_default();
             self.times.loop_s += start.elapsed().as_secs_f64();
             self.times.statistics_s +=
                 fill(&mut self.tables, &mut self.stopping, campaign, &simulated);
@@ -363,26 +371,28 @@ impl Simulation {
             first,
             episodes: self.recorded() - first,
             engine: Engine::Cpu {
-                simd: cpu.simd(),
+                simd: simulators.simd(),
                 threads: self.pool.current_num_threads(),
             },
         });
     }
 }
 
-/// Adds simulated episodes to the tables, until the stopping rule has seen enough; the time that it took, s.
+/// Adds simulated episodes, `[group][episode]`, to the tables, until the stopping rule has seen enough; the time that
+/// it took, s.
 fn fill(
     tables: &mut Tables,
     stopping: &mut StoppingRule,
     campaign: &Campaign,
-    simulated: &[EpisodeResult],
+    simulated: &[Vec<EpisodeResult>],
 ) -> f64 {
     let start = Instant::now();
-    for episode in simulated {
+    for place in 0..simulated.first().map_or(0, Vec::len) {
         if stopping.is_done() {
             break;
         }
-        tables.add(campaign, episode);
+        let groups: Vec<&EpisodeResult> = simulated.iter().map(|group| &group[place]).collect();
+        tables.add(campaign, &groups);
         let status = &tables.scores.status;
         stopping.take(|controller| status[controller].last().copied().unwrap_or(Status::Ok));
     }

@@ -4,17 +4,22 @@ use super::binomial;
 use super::interval::{Estimate, Interval, is_level};
 use super::normal::two_sided_z;
 use super::search::bisect;
+use serde::Serialize;
 
 /// Episodes by the outcome of controllers A and B, each run once on every episode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct PairedFailures {
     /// Episodes in which both failed.
+    #[serde(rename = "both_failed")]
     pub both: u64,
     /// Episodes in which A alone failed.
+    #[serde(rename = "only_a_failed")]
     pub only_a: u64,
     /// Episodes in which B alone failed.
+    #[serde(rename = "only_b_failed")]
     pub only_b: u64,
     /// Episodes in which neither failed.
+    #[serde(rename = "neither_failed")]
     pub neither: u64,
 }
 

@@ -60,7 +60,7 @@ fn tables(robots: &Campaign) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/biped-ground-reaction.toml");
     let campaign = Campaign::load(&path).expect("the campaign is valid");
     let campaign = campaign.with(|campaign| {
-        campaign.reference = robots.reference.clone();
+        campaign.reference = robots.first_group().reference.clone();
         if let Reference::Walk(walks) = &mut campaign.reference {
             walks.resize(3, walks[0].clone());
         }
@@ -68,7 +68,7 @@ fn tables(robots: &Campaign) {
         campaign.time.steps = 10_000;
     });
     let start = Instant::now();
-    black_box(Model::<f32>::new(&campaign));
+    black_box(Model::<f32>::new(campaign.first_group()));
     let time = start.elapsed().as_secs_f64();
     println!("\ntables of three robots over 10,000 steps: {time:.2} s");
 }
@@ -107,9 +107,15 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
     let flop: f64 = campaign.controllers.iter().map(of).sum();
     for &episodes in sizes {
         let campaign = campaign.clone().with(|own| own.episodes = episodes);
-        let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
-        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains.loops(), Tuning::default())
-            .expect("the campaign fits the adapter");
+        let gains =
+            GainSet::synthesize_or_load(campaign.first_group()).expect("the paper's gains exist");
+        let mut simulator = GpuSimulator::new(
+            &gpu,
+            campaign.first_group(),
+            &gains.loops(),
+            Tuning::default(),
+        )
+        .expect("the campaign fits the adapter");
         let mut first = 0;
         while first < episodes {
             let next = (first + simulator.batch()).min(episodes);
@@ -121,7 +127,9 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
             first = next;
         }
         let times = simulator.times();
-        let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
+        let steps = f64::from(campaign.time.steps)
+            * campaign.first_group().team as f64
+            * f64::from(episodes);
         let controllers = campaign.controllers.len() as f64;
         println!(
             "{episodes:>9} {:>8} {:>16.2} {:>10.1} {:>10.2} {:>10.2} {:>12.2} {:>12.2}",
@@ -140,10 +148,18 @@ fn on_gpu(campaign: &Campaign, unit: &str, flop: &[(&str, f64)]) {
 /// cores.
 fn outside_the_loop(campaign: &Campaign) {
     let campaign = campaign.clone().with(|own| own.episodes = 1000);
-    let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
+    let gains =
+        GainSet::synthesize_or_load(campaign.first_group()).expect("the paper's gains exist");
     let settings = RunOptions::cpu(Precision::F32);
     let start = Instant::now();
-    let flight = simulate(&campaign, &gains, &settings, None, &|_| ()).expect("threads");
+    let flight = simulate(
+        &campaign,
+        std::slice::from_ref(&gains),
+        &settings,
+        None,
+        &|_| (),
+    )
+    .expect("threads");
     let total = start.elapsed().as_secs_f64();
     let outside = total - flight.times.loop_s;
     println!(

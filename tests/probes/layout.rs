@@ -178,14 +178,17 @@ fn val_the_setting_that_is_sent_fills_its_struct() {
     ] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("campaigns/{name}.toml"));
         let campaign = Campaign::load(&path).unwrap();
-        let model: Model<f32> = Model::new(&campaign);
+        let model: Model<f32> = Model::new(campaign.first_group());
         for part in &model.parts {
             let mut shapes = shapes::validated().into_iter();
             let shape = shapes
                 .find(|shape| shape.plant == part.plant.kind())
                 .unwrap();
             let (_, span) = layout(&module(&shape), "Uniforms");
-            assert_eq!(setting(&campaign, part, &controller).len(), span);
+            assert_eq!(
+                setting(campaign.first_group(), part, &controller).len(),
+                span
+            );
             plants += 1;
         }
     }

@@ -160,6 +160,7 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
             _ => 1,
         },
         team,
+        first_agent: team - 1,
         lanes: if channels * team > 9 { 4 } else { 8 },
         ftc,
         coupling: if coupled {

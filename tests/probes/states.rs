@@ -27,6 +27,7 @@ struct Random<'s> {
     lists: &'s Lists,
     /// Around which onsets and ends lie.
     step: u32,
+    /// Its number in the campaign.
     agent: usize,
     first: usize,
     /// How many bursts and rings there are already.
@@ -179,7 +180,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
             numbers: Numbers::new(CONDITION, scene, agent),
             lists,
             step: Self::step(scene),
-            agent,
+            agent: self.shape.first_agent + agent,
             first: self.first,
             bursts: 0,
             rings: 0,

@@ -70,7 +70,8 @@ pub(super) fn burst<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
             for number in all.collect::<Vec<_>>().into_iter().flatten() {
                 scene.answer_number(a, c, number);
             }
-            scene.answer(a, c, Expected::Bits(member(a, world.first + c)));
+            let agent = world.shape.first_agent + a;
+            scene.answer(a, c, Expected::Bits(member(agent, world.first + c)));
         });
     })
 }

@@ -5,6 +5,7 @@ mod bipeds;
 mod campaign_files;
 mod campaign_plans;
 mod gains;
+mod groups;
 mod help;
 mod junit;
 mod notes;

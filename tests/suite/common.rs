@@ -7,7 +7,7 @@ use std::sync::{LazyLock, Mutex, Once, OnceLock};
 use urts_mc::backend::EpisodeResult;
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, Wanted, adapters};
-use urts_mc::campaign::{Campaign, Setting};
+use urts_mc::campaign::{AgentGroup, Campaign, Setting};
 use urts_mc::controllers::GainSet;
 use urts_mc::results::tables::Tables;
 
@@ -115,38 +115,60 @@ pub(crate) fn golden(name: &str) -> serde_json::Value {
     .unwrap()
 }
 
-/// The gains of a campaign, synthesized or read once for all tests whose campaigns agree in all that gains depend on.
+/// The gains of a campaign with a single group of agents, synthesized or read once for all tests whose campaigns agree
+/// in all that gains depend on.
 pub(crate) fn gains(campaign: &Campaign) -> &'static GainSet {
-    type Known = HashMap<String, &'static OnceLock<GainSet>>;
+    let [only] = gains_of_groups(campaign) else {
+        panic!("{} has several groups", campaign.name);
+    };
+    only
+}
+
+/// The same of each group of agents.
+pub(crate) fn gains_of_groups(campaign: &Campaign) -> &'static [GainSet] {
+    type Known = HashMap<String, &'static OnceLock<Vec<GainSet>>>;
     static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
     // What is designed, for which plant, and what the step is checked against.
-    let decides = (
-        (&campaign.synthesis, &campaign.controllers, &campaign.agent),
-        (
-            &campaign.mass_scale,
-            &campaign.inertia_scale,
-            campaign.time.step_s,
-        ),
-    );
+    let of_group = |group: &AgentGroup| {
+        let scales = (&group.mass_scale, &group.inertia_scale);
+        format!("{:?}", (&group.synthesis, &group.agent, scales))
+    };
+    let groups: Vec<String> = campaign.groups().iter().map(of_group).collect();
+    let decides = (groups, &campaign.controllers, campaign.time.step_s);
     let own = *KNOWN
         .lock()
         .unwrap()
         .entry(format!("{decides:?}"))
         .or_insert_with(|| Box::leak(Box::default()));
-    own.get_or_init(|| GainSet::synthesize_or_load(campaign).unwrap())
+    own.get_or_init(|| GainSet::of_groups(campaign).unwrap())
 }
 
-/// Simulates a campaign with its own gains on the widest lanes.
+/// Simulates the first group of a campaign with its own gains on the widest lanes.
 pub(crate) fn simulate(campaign: &Campaign, precision: Precision) -> Vec<EpisodeResult> {
-    let gains = gains(campaign);
-    Cpu::new(campaign, &gains.loops(), precision, None).simulate(0..campaign.episodes, &|_| ())
+    simulate_group(campaign, 0, precision)
+}
+
+/// Simulates a group of a campaign with its own gains on the widest lanes.
+pub(crate) fn simulate_group(
+    campaign: &Campaign,
+    index: usize,
+    precision: Precision,
+) -> Vec<EpisodeResult> {
+    let loops = gains_of_groups(campaign)[index].loops();
+    let cpu = Cpu::new(&campaign.groups()[index], &loops, precision, None);
+    cpu.simulate(0..campaign.episodes, &|_| ())
 }
 
 /// The tables of a campaign.
 pub(crate) fn tables(campaign: &Campaign, precision: Precision) -> Tables {
     let mut tables = Tables::new(campaign);
-    for simulated in simulate(campaign, precision) {
-        tables.add(campaign, &simulated);
+    let groups = 0..campaign.groups().len();
+    let groups: Vec<Vec<EpisodeResult>> = groups
+        .map(|index| simulate_group(campaign, index, precision))
+        .collect();
+    for episode in 0..campaign.episodes as usize {
+        let of_groups: Vec<&EpisodeResult> = groups.iter().map(|group| &group[episode]).collect();
+        tables.add(campaign, &of_groups);
     }
     tables
 }

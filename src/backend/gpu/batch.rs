@@ -10,7 +10,7 @@ use super::times::GpuTimes;
 use super::tuning::Tuning;
 use super::uniforms::setting;
 use crate::backend::EpisodeResult;
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::draw::{Episode, draw};
 use crate::model::controller::kinds::{Controller, Family};
 use crate::model::episode::{AgentOutcome, Model};
@@ -32,7 +32,7 @@ pub struct GpuSimulator<'g> {
     gpu: &'g Gpu,
     model: Model<f32>,
     controllers: Vec<Controller<f32>>,
-    groups: Vec<Pipeline>,
+    pipelines: Vec<Pipeline>,
     layout: wgpu::BindGroupLayout,
     buffers: Buffers,
     tuning: Tuning,
@@ -51,11 +51,11 @@ impl<'g> GpuSimulator<'g> {
     /// If the campaign does not fit the adapter, or its driver refuses the shaders.
     pub fn new(
         gpu: &'g Gpu,
-        campaign: &Campaign,
+        group: &AgentGroup,
         gains: &[Vec<LoopGains>],
         tuning: Tuning,
     ) -> Result<Self, GpuError> {
-        Self::rewritten(gpu, campaign, gains, tuning, &|text| text)
+        Self::rewritten(gpu, group, gains, tuning, &|text| text)
     }
 
     /// The same with changed shaders, to test that a test would notice.
@@ -65,46 +65,46 @@ impl<'g> GpuSimulator<'g> {
     #[doc(hidden)]
     pub fn rewritten(
         gpu: &'g Gpu,
-        campaign: &Campaign,
+        group: &AgentGroup,
         gains: &[Vec<LoopGains>],
         tuning: Tuning,
         rewrite: &dyn Fn(String) -> String,
     ) -> Result<Self, GpuError> {
-        let model: Model<f32> = Model::new(campaign);
-        let controllers: Vec<_> = gains.iter().map(|groups| Controller::new(groups)).collect();
+        let model: Model<f32> = Model::new(group);
+        let controllers: Vec<_> = gains.iter().map(|gains| Controller::new(gains)).collect();
         let layout = binding_layout(gpu);
         let start = Instant::now();
-        let mut groups: Vec<Pipeline> = Vec::new();
+        let mut pipelines: Vec<Pipeline> = Vec::new();
         let mut most_steps = u32::MAX;
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
                 let ftc = matches!(gains.family, Family::FaultTolerant(_));
-                let shape = shape(gpu, campaign, part, ftc)?;
+                let shape = shape(gpu, group, part, ftc)?;
                 most_steps = most_steps.min(shape.most_steps(gpu)?);
                 // The axes mostly share their shaders, and the PIDs do.
-                let known = groups.iter().find(|group| group.shape == shape);
-                let pipelines = match known {
-                    Some(group) => group.pipelines.clone(),
+                let known = pipelines.iter().find(|pipeline| pipeline.shape == shape);
+                let entries = match known {
+                    Some(pipeline) => pipeline.entries.clone(),
                     None => gpu.compile(&rewrite(shape.text()), &layout, ENTRIES)?,
                 };
-                let bytes = setting(campaign, part, gains);
+                let bytes = setting(group, part, gains);
                 let setting = gpu.checked(
                     || gpu.buffer(bytes.len().div_ceil(4), Use::Uniform),
                     |error| gpu.driver_error(error),
                 )?;
                 gpu.write(&setting, 0, &bytes)?;
-                groups.push(Pipeline {
+                pipelines.push(Pipeline {
                     part: number,
                     controller,
                     shape,
-                    pipelines,
+                    entries,
                     setting,
                 });
             }
         }
         let compile_s = start.elapsed().as_secs_f64();
-        let batch = batch(gpu, &groups, campaign.episodes, tuning);
-        let buffers = Buffers::largest(gpu, &layout, &groups, &model, batch)?;
+        let batch = batch(gpu, &pipelines, group.episodes, tuning);
+        let buffers = Buffers::largest(gpu, &layout, &pipelines, &model, batch)?;
         let most_steps = most_steps.min(buffers.window_steps).max(1);
         Ok(Self {
             gpu,
@@ -112,7 +112,7 @@ impl<'g> GpuSimulator<'g> {
             most_steps,
             model,
             controllers,
-            groups,
+            pipelines,
             layout,
             buffers,
             tuning,
@@ -158,17 +158,17 @@ impl<'g> GpuSimulator<'g> {
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
     ) -> Result<Vec<EpisodeResult>, GpuError> {
-        let campaign = &self.model.campaign;
+        let group = &self.model.group;
         let start = Instant::now();
         let episodes: Vec<Episode> = episodes
             .into_par_iter()
-            .map(|episode| draw(campaign, episode))
+            .map(|episode| draw(group, episode))
             .collect();
         self.load(&episodes)?;
         self.times.upload_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let steps = self.model.campaign.time.steps;
+        let steps = self.model.group.time.steps;
         let mut told = 0;
         self.advance(episodes.len(), 0..steps, &mut |step| {
             let share = u64::from(word(episodes.len())) * u64::from(step) / u64::from(steps);
@@ -195,14 +195,14 @@ impl<'g> GpuSimulator<'g> {
         every: u32,
         visit: &mut dyn FnMut(&TraceInstant<'_>),
     ) -> Result<Vec<EpisodeResult>, GpuError> {
-        let campaign = &self.model.campaign;
-        let (steps, every) = (campaign.time.steps, every.max(1));
+        let group = &self.model.group;
+        let (steps, every) = (group.time.steps, every.max(1));
         if episodes.is_empty() {
             return Ok(Vec::new());
         }
         let episodes: Vec<Episode> = episodes
             .iter()
-            .map(|&episode| draw(campaign, episode))
+            .map(|&episode| draw(group, episode))
             .collect();
         let samples = word(self.samples(episodes.len()));
         self.allocate(episodes.len(), samples as usize)?;
@@ -217,26 +217,26 @@ impl<'g> GpuSimulator<'g> {
                 self.run_sampled(episodes.len(), step, next, sample)?;
             }
             let read: Vec<Vec<u32>> = self
-                .groups
+                .pipelines
                 .iter()
                 .zip(&self.buffers.own)
-                .map(|(group, buffers)| {
-                    let words = instants.len() * group.invocations(episodes.len()) * SHOWN_WORDS;
+                .map(|(pipeline, buffers)| {
+                    let words = instants.len() * pipeline.invocations(episodes.len()) * SHOWN_WORDS;
                     self.gpu.read(&buffers.output, &buffers.read_back, words)
                 })
                 .collect::<Result<_, _>>()?;
             for (sample, &step) in instants.iter().enumerate() {
                 let words = self
-                    .groups
+                    .pipelines
                     .iter()
                     .zip(&read)
-                    .map(|(group, read)| {
-                        &read[sample * group.invocations(episodes.len()) * SHOWN_WORDS..]
+                    .map(|(pipeline, read)| {
+                        &read[sample * pipeline.invocations(episodes.len()) * SHOWN_WORDS..]
                     })
                     .collect();
                 visit(&TraceInstant {
                     step,
-                    groups: &self.groups,
+                    pipelines: &self.pipelines,
                     words,
                 });
             }
@@ -246,17 +246,17 @@ impl<'g> GpuSimulator<'g> {
 
     /// Replaces the buffers.
     fn allocate(&mut self, batch: usize, samples: usize) -> Result<(), GpuError> {
-        let (groups, model) = (&self.groups, &self.model);
-        self.buffers = Buffers::new(self.gpu, &self.layout, groups, model, batch, samples)?;
+        let (pipelines, model) = (&self.pipelines, &self.model);
+        self.buffers = Buffers::new(self.gpu, &self.layout, pipelines, model, batch, samples)?;
         Ok(())
     }
 
     /// Samples of so many episodes that fit the outputs.
     fn samples(&self, episodes: usize) -> usize {
-        let most = self.groups.iter().map(|group| {
+        let most = self.pipelines.iter().map(|pipeline| {
             let limit = storage_limit(self.gpu) / 4;
             usize::try_from(limit).unwrap_or(usize::MAX)
-                / (group.invocations(episodes) * SHOWN_WORDS)
+                / (pipeline.invocations(episodes) * SHOWN_WORDS)
         });
         most.min().unwrap_or(1).clamp(1, SAMPLES as usize)
     }
@@ -274,11 +274,15 @@ impl<'g> GpuSimulator<'g> {
             .zip(&self.buffers.shared)
             .enumerate()
         {
-            let Some(group) = self.groups.iter().find(|group| group.part == number) else {
+            let Some(pipeline) = self
+                .pipelines
+                .iter()
+                .find(|pipeline| pipeline.part == number)
+            else {
                 continue;
             };
-            let (campaign, first) = (&self.model.campaign, part.channels.start);
-            let draws = layout::draws(campaign, &group.shape, first, episodes);
+            let (group, first) = (&self.model.group, part.channels.start);
+            let draws = layout::draws(group, &pipeline.shape, first, episodes);
             self.gpu.upload(&buffers.draws, &draws)?;
         }
         self.dispatch(episodes.len(), Entry::Start, 0..0, 0)
@@ -286,10 +290,10 @@ impl<'g> GpuSimulator<'g> {
 
     /// Reads how the episodes of a batch ended.
     fn simulated(&mut self, episodes: Vec<Episode>) -> Result<Vec<EpisodeResult>, GpuError> {
-        let campaign = &self.model.campaign;
-        let steps = campaign.time.steps;
+        let group = &self.model.group;
+        let steps = group.time.steps;
         let blank = vec![
-            vec![AgentOutcome::blank(campaign.channels().len()); campaign.team];
+            vec![AgentOutcome::blank(group.channels().len()); group.team];
             self.controllers.len()
         ];
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
@@ -300,18 +304,18 @@ impl<'g> GpuSimulator<'g> {
                 outcomes: blank.clone(),
             })
             .collect();
-        for (group, buffers) in self.groups.iter().zip(&self.buffers.own) {
-            let words = group.invocations(simulated.len()) * OUTCOME_WORDS;
+        for (pipeline, buffers) in self.pipelines.iter().zip(&self.buffers.own) {
+            let words = pipeline.invocations(simulated.len()) * OUTCOME_WORDS;
             let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
             layout::take_outcomes(
-                &self.model.campaign,
-                &group.shape,
-                self.model.parts[group.part].channels.start,
+                &self.model.group,
+                &pipeline.shape,
+                self.model.parts[pipeline.part].channels.start,
                 &words,
                 simulated.iter_mut().map(|simulated| {
                     (
                         simulated.episode.index,
-                        &mut simulated.outcomes[group.controller],
+                        &mut simulated.outcomes[pipeline.controller],
                     )
                 }),
             )
@@ -382,23 +386,24 @@ impl<'g> GpuSimulator<'g> {
             self.cover(&span)?;
         }
         let stride = span_stride(self.gpu);
-        let mut spans = vec![0; stride * self.groups.len()];
-        for (group, bytes) in self.groups.iter().zip(spans.chunks_mut(stride)) {
+        let mut spans = vec![0; stride * self.pipelines.len()];
+        for (pipeline, bytes) in self.pipelines.iter().zip(spans.chunks_mut(stride)) {
             let span = Span {
                 first: span.start,
                 until: span.end,
                 table_first: 2 * span.start.saturating_sub(self.buffers.window.start),
-                output_first: sample * word(group.invocations(episodes) * SHOWN_WORDS),
+                output_first: sample * word(pipeline.invocations(episodes) * SHOWN_WORDS),
             };
             bytes[..size_of::<Span>()].copy_from_slice(bytemuck::bytes_of(&span));
         }
         self.gpu.write(&self.buffers.spans, 0, &spans)?;
         self.gpu.submit(|encoder| {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            for (k, (group, buffers)) in self.groups.iter().zip(&self.buffers.own).enumerate() {
-                pass.set_pipeline(&group.pipelines[entry as usize]);
+            for (k, (pipeline, buffers)) in self.pipelines.iter().zip(&self.buffers.own).enumerate()
+            {
+                pass.set_pipeline(&pipeline.entries[entry as usize]);
                 pass.set_bind_group(0, &buffers.bindings, &[word(k * stride)]);
-                pass.dispatch_workgroups(word(episodes.div_ceil(group.shape.lanes)), 1, 1);
+                pass.dispatch_workgroups(word(episodes.div_ceil(pipeline.shape.lanes)), 1, 1);
             }
         })
     }
@@ -409,13 +414,13 @@ impl<'g> GpuSimulator<'g> {
         if !window.is_empty() && window.start <= span.start && span.end <= window.end {
             return Ok(());
         }
-        let steps = self.model.campaign.time.steps;
+        let steps = self.model.group.time.steps;
         let end = span
             .start
             .saturating_add(self.buffers.window_steps)
             .min(steps);
         for (part, buffers) in self.model.parts.iter().zip(&self.buffers.shared) {
-            let stride = self.model.campaign.team * part.channels.len() * part.rows;
+            let stride = self.model.group.team * part.channels.len() * part.rows;
             let rows =
                 &part.table[2 * span.start as usize * stride..(2 * end as usize + 1) * stride];
             self.gpu.write(&buffers.table, 0, rows)?;

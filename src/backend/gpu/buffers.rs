@@ -43,13 +43,13 @@ impl Buffers {
     pub(super) fn largest(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        groups: &[Pipeline],
+        pipelines: &[Pipeline],
         model: &Model<f32>,
         mut batch: usize,
     ) -> Result<Self, GpuError> {
-        let least = groups.iter().map(|group| group.shape.lanes).max();
+        let least = pipelines.iter().map(|pipeline| pipeline.shape.lanes).max();
         loop {
-            match Self::new(gpu, layout, groups, model, batch, 0) {
+            match Self::new(gpu, layout, pipelines, model, batch, 0) {
                 Err(GpuError::OutOfMemory { .. }) if Some(batch) > least => batch /= 2,
                 result => return result,
             }
@@ -59,34 +59,37 @@ impl Buffers {
     pub(super) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        groups: &[Pipeline],
+        pipelines: &[Pipeline],
         model: &Model<f32>,
         batch: usize,
         samples: usize,
     ) -> Result<Self, GpuError> {
-        let window_steps = groups
+        let window_steps = pipelines
             .iter()
-            .map(|group| window_steps(group, gpu, model.campaign.time.steps))
+            .map(|pipeline| window_steps(pipeline, gpu, model.group.time.steps))
             .min()
             .unwrap_or(1);
-        let sizes = |group: &Pipeline| Sizes::new(group, batch, samples, window_steps);
-        let words: usize = groups.iter().map(|group| sizes(group).total()).sum();
+        let sizes = |pipeline: &Pipeline| Sizes::new(pipeline, batch, samples, window_steps);
+        let words: usize = pipelines
+            .iter()
+            .map(|pipeline| sizes(pipeline).total())
+            .sum();
         gpu.checked(
             || {
-                let spans = gpu.buffer(span_stride(gpu) / 4 * groups.len(), Use::Uniform);
+                let spans = gpu.buffer(span_stride(gpu) / 4 * pipelines.len(), Use::Uniform);
                 // Every controller's groups have the same draws and references.
                 let shared: Vec<SharedBuffers> = (0..model.parts.len())
-                    .filter_map(|part| groups.iter().find(|group| group.part == part))
-                    .map(|group| SharedBuffers {
-                        draws: gpu.buffer(sizes(group).draws, Use::Storage),
-                        table: gpu.buffer(sizes(group).table, Use::Storage),
+                    .filter_map(|part| pipelines.iter().find(|pipeline| pipeline.part == part))
+                    .map(|pipeline| SharedBuffers {
+                        draws: gpu.buffer(sizes(pipeline).draws, Use::Storage),
+                        table: gpu.buffer(sizes(pipeline).table, Use::Storage),
                     })
                     .collect();
-                let own = groups
+                let own = pipelines
                     .iter()
-                    .map(|group| {
-                        let shared = &shared[group.part];
-                        OwnBuffers::new(gpu, layout, group, shared, &spans, &sizes(group))
+                    .map(|pipeline| {
+                        let shared = &shared[pipeline.part];
+                        OwnBuffers::new(gpu, layout, pipeline, shared, &spans, &sizes(pipeline))
                     })
                     .collect();
                 Self {
@@ -119,10 +122,15 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    pub(super) fn new(group: &Pipeline, batch: usize, samples: usize, window_steps: u32) -> Self {
-        let shape = &group.shape;
+    pub(super) fn new(
+        pipeline: &Pipeline,
+        batch: usize,
+        samples: usize,
+        window_steps: u32,
+    ) -> Self {
+        let shape = &pipeline.shape;
         let words = shape.words();
-        let invocations = group.invocations(batch);
+        let invocations = pipeline.invocations(batch);
         Self {
             draws: invocations * words.drawn(),
             state: invocations * words.stored(),
@@ -140,7 +148,7 @@ impl OwnBuffers {
     pub(super) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        group: &Pipeline,
+        pipeline: &Pipeline,
         shared: &SharedBuffers,
         spans: &wgpu::Buffer,
         sizes: &Sizes,
@@ -153,7 +161,7 @@ impl OwnBuffers {
             size: wgpu::BufferSize::new(size_of::<Span>() as u64),
         };
         let resources = [
-            group.setting.as_entire_binding(),
+            pipeline.setting.as_entire_binding(),
             wgpu::BindingResource::Buffer(span),
             shared.draws.as_entire_binding(),
             state.as_entire_binding(),
@@ -187,8 +195,8 @@ pub(super) fn storage_limit(gpu: &Gpu) -> u64 {
 }
 
 /// Steps whose references fit the table on the device.
-pub(super) fn window_steps(group: &Pipeline, gpu: &Gpu, steps: u32) -> u32 {
-    let instant = 16 * group.shape.table_rows();
+pub(super) fn window_steps(pipeline: &Pipeline, gpu: &Gpu, steps: u32) -> u32 {
+    let instant = 16 * pipeline.shape.table_rows();
     let bytes = TABLE.min(usize::try_from(storage_limit(gpu)).unwrap_or(TABLE));
     word((bytes / instant).saturating_sub(1) / 2).clamp(1, steps)
 }
@@ -199,26 +207,29 @@ pub(super) fn span_stride(gpu: &Gpu) -> usize {
 }
 
 /// Episodes of a batch: what is asked for, or what fills the device, within the limits of buffers and memory.
-pub(super) fn batch(gpu: &Gpu, groups: &[Pipeline], episodes: u32, tuning: Tuning) -> usize {
+pub(super) fn batch(gpu: &Gpu, pipelines: &[Pipeline], episodes: u32, tuning: Tuning) -> usize {
     let limit = storage_limit(gpu);
-    let per_episode = |group: &Pipeline| {
-        let sizes = Sizes::new(group, group.shape.lanes, 0, 0);
+    let per_episode = |pipeline: &Pipeline| {
+        let sizes = Sizes::new(pipeline, pipeline.shape.lanes, 0, 0);
         let largest = sizes.state.max(sizes.draws).max(sizes.output);
         (
-            device::bytes(largest.div_ceil(group.shape.lanes)),
-            device::bytes(sizes.total().div_ceil(group.shape.lanes)),
+            device::bytes(largest.div_ceil(pipeline.shape.lanes)),
+            device::bytes(sizes.total().div_ceil(pipeline.shape.lanes)),
         )
     };
-    let fits = groups
+    let fits = pipelines
         .iter()
-        .map(|group| limit / per_episode(group).0)
+        .map(|pipeline| limit / per_episode(pipeline).0)
         .min()
         .unwrap_or(1);
-    let total: u64 = groups.iter().map(|group| per_episode(group).1).sum();
-    // Whole blocks, so that the limits hold for the padding too.
-    let lanes = groups
+    let total: u64 = pipelines
         .iter()
-        .map(|group| group.shape.lanes as u64)
+        .map(|pipeline| per_episode(pipeline).1)
+        .sum();
+    // Whole blocks, so that the limits hold for the padding too.
+    let lanes = pipelines
+        .iter()
+        .map(|pipeline| pipeline.shape.lanes as u64)
         .max()
         .unwrap_or(1);
     let most = (fits.min(MEMORY / total) / lanes * lanes).max(1);

@@ -8,7 +8,7 @@ use crate::model::ChannelSample;
 pub struct TraceInstant<'a> {
     /// Step number.
     pub step: u32,
-    pub(super) groups: &'a [Pipeline],
+    pub(super) pipelines: &'a [Pipeline],
     /// Of each group, the words of this instant.
     pub(super) words: Vec<&'a [u32]>,
 }
@@ -17,14 +17,16 @@ impl TraceInstant<'_> {
     /// What every agent and channel of an episode shows, `[agent][channel]`; episodes are counted within the trace.
     #[must_use]
     pub fn agents(&self, episode: usize, controller: usize) -> Vec<Vec<ChannelSample>> {
-        let groups = || {
-            let groups = self.groups.iter().zip(&self.words);
-            groups.filter(|(group, _)| group.controller == controller)
+        let pipelines = || {
+            let pipelines = self.pipelines.iter().zip(&self.words);
+            pipelines.filter(|(pipeline, _)| pipeline.controller == controller)
         };
-        let team = groups().next().map_or(0, |(group, _)| group.shape.team);
+        let team = pipelines()
+            .next()
+            .map_or(0, |(pipeline, _)| pipeline.shape.team);
         (0..team)
             .map(|agent| {
-                let channels = groups().flat_map(|(Pipeline { shape, .. }, words)| {
+                let channels = pipelines().flat_map(|(Pipeline { shape, .. }, words)| {
                     let (block, lane) = (episode / shape.lanes, episode % shape.lanes);
                     let words = &words[block * SHOWN_WORDS * shape.workgroup()..];
                     (0..shape.channels).map(move |channel| {

@@ -2,7 +2,7 @@
 
 use super::shape::Shape;
 use super::signals::Lists;
-use crate::campaign::{Campaign, Time};
+use crate::campaign::{AgentGroup, Time};
 use crate::draw::Episode;
 use crate::model::ChannelSample;
 use crate::model::episode::AgentOutcome;
@@ -176,26 +176,26 @@ macro_rules! with_channels {
 }
 
 /// The lists of a group's channels.
-pub(crate) fn lists(campaign: &Campaign, channels: Range<usize>, episode: &Episode) -> Lists {
-    with_channels!(channels.len(), lists_of(campaign, channels.start, episode))
+pub(crate) fn lists(group: &AgentGroup, channels: Range<usize>, episode: &Episode) -> Lists {
+    with_channels!(channels.len(), lists_of(group, channels.start, episode))
 }
 
-fn lists_of<const NC: usize>(campaign: &Campaign, first: usize, episode: &Episode) -> Lists {
+fn lists_of<const NC: usize>(group: &AgentGroup, first: usize, episode: &Episode) -> Lists {
     let condition: ChannelInputs<f32, NC> = LaneBlock {
-        campaign,
+        group,
         episodes: std::slice::from_ref(episode),
     }
     .condition(0, first, Selection::Possible);
     Lists::of(
         &condition.signals,
         condition.vortices.len(),
-        ring_steps(campaign),
+        ring_steps(group),
     )
 }
 
 /// The longest past that a campaign's channels may have to remember, in steps.
-fn ring_steps(campaign: &Campaign) -> usize {
-    let parameters = campaign
+fn ring_steps(group: &AgentGroup) -> usize {
+    let parameters = group
         .faults
         .iter()
         .flat_map(|fault| fault.kind.parameters().iter().zip(&fault.parameters));
@@ -203,7 +203,7 @@ fn ring_steps(campaign: &Campaign) -> usize {
         .filter(|(parameter, _)| parameter.is_remembered())
         .map(|(_, length_s)| length_s);
     let longest_s = lengths
-        .chain(&campaign.control.delay_s)
+        .chain(&group.control.delay_s)
         .flat_map(|length_s| &length_s.distributions)
         .map(|length_s| length_s.support().1)
         .reduce(f64::max);
@@ -212,22 +212,22 @@ fn ring_steps(campaign: &Campaign) -> usize {
         clippy::cast_sign_loss,
         reason = "validated to be small"
     )]
-    longest_s.map_or(1, |longest_s| campaign.time.whole_steps(longest_s) as usize)
+    longest_s.map_or(1, |longest_s| group.time.whole_steps(longest_s) as usize)
 }
 
 /// The draws of a group's channels, `[block of episodes][word][channel][agent][episode]`; the last block is filled up
 /// with its last episode.
 pub(crate) fn draws(
-    campaign: &Campaign,
+    group: &AgentGroup,
     shape: &Shape,
     first: usize,
     episodes: &[Episode],
 ) -> Vec<u32> {
-    with_channels!(shape.channels, draws_of(campaign, shape, first, episodes))
+    with_channels!(shape.channels, draws_of(group, shape, first, episodes))
 }
 
 fn draws_of<const NC: usize>(
-    campaign: &Campaign,
+    group: &AgentGroup,
     shape: &Shape,
     first: usize,
     episodes: &[Episode],
@@ -241,7 +241,7 @@ fn draws_of<const NC: usize>(
             for lane in 0..shape.lanes {
                 let episode = &episodes[lane.min(episodes.len() - 1)];
                 let block = LaneBlock {
-                    campaign,
+                    group,
                     episodes: std::slice::from_ref(episode),
                 };
                 for agent in 0..shape.team {
@@ -323,7 +323,7 @@ pub(crate) fn drawn<const NC: usize>(
 /// # Errors
 /// If the words are not of these episodes: a dispatch was not carried out, or a buffer holds something else.
 pub(crate) fn take_outcomes<'a>(
-    campaign: &Campaign,
+    group: &AgentGroup,
     shape: &Shape,
     first: usize,
     words: &[u32],
@@ -345,7 +345,7 @@ pub(crate) fn take_outcomes<'a>(
                         "the outcome of episode {marked} stands in the place of episode {episode}"
                     ));
                 }
-                let (ending, metrics) = ended(campaign.time, word);
+                let (ending, metrics) = ended(group.time, word);
                 outcome.take(first + channel, ending, metrics);
             }
         }

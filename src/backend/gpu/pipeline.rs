@@ -4,7 +4,7 @@ use super::device::Gpu;
 use super::shape::Shape;
 use super::uniforms::PlantUniforms;
 use super::{GpuError, layout};
-use crate::campaign::{Campaign, IntegralKind, ObserverStart};
+use crate::campaign::{AgentGroup, IntegralKind, ObserverStart};
 use crate::draw::draw;
 use crate::model::agent::Coupling;
 use crate::model::subsystem::Subsystem;
@@ -23,7 +23,7 @@ pub(super) struct Pipeline {
     pub(super) part: usize,
     pub(super) controller: usize,
     pub(super) shape: Shape,
-    pub(super) pipelines: [wgpu::ComputePipeline; 4],
+    pub(super) entries: [wgpu::ComputePipeline; 4],
     pub(super) setting: wgpu::Buffer,
 }
 
@@ -78,25 +78,26 @@ pub(crate) fn binding_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 /// The shape of a part's shaders on this adapter.
 pub(super) fn shape(
     gpu: &Gpu,
-    campaign: &Campaign,
+    group: &AgentGroup,
     part: &Subsystem<f32>,
     ftc: bool,
 ) -> Result<Shape, GpuError> {
-    let episode = draw(campaign, 0);
-    let lists = layout::lists(campaign, part.channels.clone(), &episode);
+    let episode = draw(group, 0);
+    let lists = layout::lists(group, part.channels.clone(), &episode);
     let limits = gpu.limits();
     let mut shape = Shape {
         plant: part.plant.kind(),
         plant_constants: part.plant.constants(),
-        cut: campaign.is_limited(),
+        cut: group.is_limited(),
         channels: part.plant.kind().spec().channels,
         rows: part.rows,
-        team: campaign.team,
+        team: group.team,
+        first_agent: group.first_agent,
         lanes: MAX_LANES,
         ftc,
-        coupling: Coupling::of(campaign),
-        measured_integral: campaign.control.integral == IntegralKind::Sensor,
-        observer_measured: campaign.initial.observer == ObserverStart::Measured,
+        coupling: Coupling::of(group),
+        measured_integral: group.control.integral == IntegralKind::Sensor,
+        observer_measured: group.initial.observer == ObserverStart::Measured,
         lists,
     };
     // The same for every batch: another shape is another text, which a driver might compile to other roundings.

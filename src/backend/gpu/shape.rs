@@ -19,6 +19,8 @@ pub(crate) struct Shape {
     pub(crate) rows: usize,
     /// Agents of an episode.
     pub(crate) team: usize,
+    /// The number in the campaign of the first of them.
+    pub(crate) first_agent: usize,
     /// Episodes of a workgroup.
     pub(crate) lanes: usize,
     /// Whether the controller is a fault-tolerant one.

@@ -84,6 +84,7 @@ impl Shape {
         text.count("NC", self.channels);
         text.count("ROWS", self.rows);
         text.count("TEAM", self.team);
+        text.count("FIRST_AGENT", self.first_agent);
         text.count("LANES", self.lanes);
         text.count("WORKGROUP", self.workgroup());
         text.count("KINDS", self.kinds());

@@ -1,6 +1,7 @@
 //! Where the time of a GPU's work went.
 
 use serde::{Deserialize, Serialize};
+use std::iter::Sum;
 
 /// Wall-clock times of a simulation on a GPU, s.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -14,4 +15,15 @@ pub struct GpuTimes {
     pub kernel_s: f64,
     /// Receiving outcomes.
     pub read_back_s: f64,
+}
+
+impl Sum for GpuTimes {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, own| Self {
+            compile_s: sum.compile_s + own.compile_s,
+            upload_s: sum.upload_s + own.upload_s,
+            kernel_s: sum.kernel_s + own.kernel_s,
+            read_back_s: sum.read_back_s + own.read_back_s,
+        })
+    }
 }

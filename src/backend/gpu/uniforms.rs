@@ -3,7 +3,7 @@
 
 use super::layout::word;
 use crate::agent::HEIGHT;
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::model::controller::kinds::Controller;
 use crate::model::controller::observer_feedback::ChannelGains;
 use crate::model::integrator::Step;
@@ -200,21 +200,21 @@ impl From<&ChannelGains<f32>> for GainsUniforms {
 
 /// The bytes of a group's `Uniforms` under a controller.
 pub(crate) fn setting(
-    campaign: &Campaign,
+    group: &AgentGroup,
     part: &Subsystem<f32>,
     controller: &Controller<f32>,
 ) -> Vec<u8> {
-    let h = Step::<f32>::new(campaign.time.step_s);
+    let h = Step::<f32>::new(group.time.step_s);
     let head = SettingHead {
-        seed: key(campaign.seed),
-        settle_step: campaign.time.settle_step,
+        seed: key(group.seed),
+        settle_step: group.time.settle_step,
         first_channel: word(part.channels.start),
         h: [h.sixth, h.third, h.half, h.whole],
     };
     let mut bytes = bytemuck::bytes_of(&head).to_vec();
     bytes.extend(part.plant.bytes());
     for channel in part.channels.clone() {
-        let verdict = &campaign.verdict;
+        let verdict = &group.verdict;
         let limits = Limits::<f32>::new(verdict.max_error[channel], verdict.settled_error[channel]);
         bytes.extend(bytemuck::bytes_of(&[
             limits.max_error,
@@ -223,7 +223,7 @@ pub(crate) fn setting(
             0.0,
         ]));
     }
-    for (group, gains) in campaign
+    for (channels, gains) in group
         .channel_groups()
         .iter()
         .zip(controller.observer_gains())
@@ -231,7 +231,7 @@ pub(crate) fn setting(
         if part
             .channels
             .clone()
-            .any(|channel| group.channels.contains(&channel))
+            .any(|channel| channels.channels.contains(&channel))
         {
             bytes.extend(bytemuck::bytes_of(&GainsUniforms::from(gains)));
         }

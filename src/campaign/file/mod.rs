@@ -1,11 +1,13 @@
 //! The campaign file as it is written: one struct per TOML table, nothing checked but names and types.
 //! [`super::Campaign`] is what the rest of the program sees.
 
+mod campaign;
 mod disturbances_and_faults;
 mod parameters;
 mod plan;
 mod value;
 
+pub use campaign::{CampaignFile, GroupFile};
 pub use disturbances_and_faults::*;
 pub(super) use parameters::Parameters;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
@@ -18,63 +20,7 @@ use parameters::table_and_block;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use value::{some_table, some_tables, some_word, table, tables, word};
-
-/// A campaign: which closed loop is simulated, what disturbs it, how often, and what counts as failure.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CampaignFile {
-    /// Name of the campaign and of its output folder.
-    pub name: String,
-    /// Seed of every random number.
-    pub seed: u64,
-    /// Number of episodes.
-    pub episodes: u32,
-    /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned" or a name under `[synthesis.named]`.
-    pub controllers: Option<Vec<String>>,
-    /// Duration and step.
-    #[serde(deserialize_with = "table")]
-    pub time: TimeFile,
-    /// The plant.
-    #[serde(deserialize_with = "table")]
-    pub agent: AgentFile,
-    /// Where the agents are to go.
-    #[serde(deserialize_with = "table")]
-    pub reference: ReferenceFile,
-    /// How the gains are found.
-    #[serde(deserialize_with = "table")]
-    pub synthesis: SynthesisFile,
-    /// What is between measurement and command, beside the controller.
-    #[serde(default, deserialize_with = "some_table")]
-    pub control: Option<ControlFile>,
-    /// Initial errors.
-    #[serde(default, deserialize_with = "some_table")]
-    pub initial: Option<InitialFile>,
-    /// Coupling between the agents of a team, (10).
-    #[serde(default, deserialize_with = "some_table")]
-    pub coupling: Option<CouplingFile>,
-    /// External disturbances d1, summed.
-    #[serde(default, deserialize_with = "tables")]
-    pub disturbance: Vec<DisturbanceFile>,
-    /// Faults of actuators, sensors, the network and the plant.
-    #[serde(default, deserialize_with = "tables")]
-    pub fault: Vec<FaultFile>,
-    /// Parts of the episodes with faults of their own (default: all episodes draw all faults).
-    #[serde(default, deserialize_with = "tables")]
-    pub strata: Vec<StratumFile>,
-    /// How the random numbers of the episodes are chosen.
-    #[serde(default, deserialize_with = "some_table")]
-    pub sampling: Option<SamplingFile>,
-    /// When the run may end before its last episode (default: never).
-    #[serde(default, deserialize_with = "some_table")]
-    pub stop: Option<StopFile>,
-    /// What counts as failure.
-    #[serde(default, deserialize_with = "some_table")]
-    pub verdict: Option<VerdictFile>,
-    /// Conditions on the result; one that does not hold makes the run exit with 4.
-    #[serde(default, deserialize_with = "tables")]
-    pub require: Vec<RequireFile>,
-}
+use value::{some_table, some_tables, some_word, word};
 
 /// `[time]`
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

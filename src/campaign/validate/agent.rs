@@ -19,7 +19,7 @@ impl Check<'_> {
     pub(super) fn agent(
         &self,
         file: &AgentFile,
-        robot: Option<&str>,
+        robot: Option<String>,
     ) -> Result<Agent, CampaignError> {
         match file.kind {
             AgentKind::Uav => {
@@ -45,7 +45,7 @@ impl Check<'_> {
         }
     }
 
-    fn biped(&self, file: &AgentFile, text: Option<&str>) -> Result<Biped, CampaignError> {
+    fn biped(&self, file: &AgentFile, text: Option<String>) -> Result<Biped, CampaignError> {
         let actuation = file.actuation.unwrap_or(ActuationKind::Full);
         if actuation == ActuationKind::Thrust {
             return Err(self.invalid(
@@ -58,7 +58,7 @@ impl Check<'_> {
         let beside = |name: &String| self.source.beside(name);
         let path = file.robot.as_ref().map_or(robot::G1_PATH.into(), beside);
         let text = match (text, &file.robot) {
-            (Some(text), _) => text.to_string(),
+            (Some(text), _) => text,
             (None, None) => robot::G1.to_string(),
             (None, Some(name)) => {
                 Robot::text(&path).map_err(|error| self.no_robot(name, &error))?

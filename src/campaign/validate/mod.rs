@@ -5,6 +5,7 @@ mod agent;
 mod disturbance;
 mod fault;
 mod fault_channels;
+mod group;
 mod plan;
 mod reference;
 mod sampling;
@@ -12,16 +13,14 @@ mod synthesis;
 mod timing;
 
 use super::check::Check;
-use super::disturbances_and_faults::{Disturbance, Fault};
+use super::common::Common;
 use super::error::CampaignError;
 use super::file::*;
-use super::parameter::SamplingScope;
-use super::parameter::{Bounds, required};
-use super::quantity::RandomQuantity;
+use super::parameter::Bounds;
 use super::source::Source;
 use super::time::Time;
-use super::validated::{Campaign, Control, Initial, Validated, Verdict};
-use crate::agent::{ActuationKind, Agent};
+use super::validated::Campaign;
+use group::{Begun, MAX_AGENTS, RobotTexts};
 use std::sync::Arc;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
@@ -29,77 +28,85 @@ const MAX_STEPS: f64 = 8_388_608.0;
 /// Memory that the reference tables of a campaign may take, bytes.
 const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
 
-/// Checks a file as written; `robot` is the text of the robot's file, if it is not to be read.
+/// Checks a file as written.
 pub(super) fn validate(
-    file: CampaignFile,
+    mut file: CampaignFile,
     source: Source<'_>,
-    robot: Option<&str>,
+    robots: RobotTexts<'_>,
 ) -> Result<Campaign, CampaignError> {
-    let mut check = Check {
-        source,
-        channels: Vec::new(),
-    };
+    let check = Check::new(source, String::new());
     check.name("name", &file.name)?;
     check.episodes(file.episodes)?;
     let time = check.time(&file.time)?;
-    let team = check.team(&file.agent)?;
-    let agent = check.agent(&file.agent, robot)?;
-    check.channels = agent.channels();
-    check.table_fits(&file.time, time, team, &agent)?;
-    let scale = |key: &str, value: &Option<Value>| {
-        check.of_agents(
-            key,
-            value.as_ref(),
-            Some(1.0),
-            SamplingScope::Episode,
-            Bounds::Positive,
-            team,
-        )
-    };
-    let synthesis = check.synthesis(&file.synthesis, &agent)?;
-    let fault_names = check.fault_names(&file.fault)?;
+    let files = check.groups(&mut file)?;
+    let mut begun = Vec::new();
+    for (prefix, file) in files {
+        let own = Check::new(source, prefix);
+        begun.push(own.begin_group(file, robots)?);
+    }
+    check.agents_fit(&begun, &file.time, time)?;
+    let synthesis: Vec<_> = begun.iter().map(|group| &group.synthesis).collect();
     let controllers = check.controllers(file.controllers.as_deref(), &synthesis)?;
-    let strata = check.strata(&file.strata, &file.fault, &fault_names, file.episodes)?;
-    let sampling = check.sampling(&file)?;
-    Ok(Campaign::new(Validated {
+    let faults: Vec<(Arc<str>, bool)> = begun.iter().flat_map(Begun::faults).collect();
+    let strata = check.strata(&file.strata, &faults, file.episodes)?;
+    let sampling = check.sampling(&file, begun.iter().map(Begun::entries).max())?;
+    let common = Arc::new(Common {
         path: source.path.to_path_buf(),
         text: source.text.to_string(),
         overlay: source.overlay.to_vec(),
-        name: file.name.clone(),
-        seed: file.seed,
-        episodes: file.episodes,
         requirements: check.requirements(&file.require, &controllers, &strata, sampling)?,
         stop: check.stop(&file, &controllers, sampling)?,
+        name: file.name,
+        seed: file.seed,
+        episodes: file.episodes,
         controllers,
         time,
-        team,
-        reference: check.reference(&file.reference, team, &agent)?,
-        synthesis,
-        mass_scale: scale("agent.mass_scale", &file.agent.mass_scale)?,
-        inertia_scale: scale("agent.inertia_scale", &file.agent.inertia_scale)?,
-        kappa: check.kappa(file.coupling.as_ref(), team)?,
-        coordinates: file
-            .coupling
-            .as_ref()
-            .and_then(|coupling| coupling.coordinates)
-            .unwrap_or(CouplingCoordinates::Absolute),
-        control: check.control(
-            file.control.as_ref().unwrap_or(&ControlFile::default()),
-            team,
-            time,
-        )?,
-        initial: check.initial(file.initial.as_ref(), team)?,
-        disturbances: check.disturbances(&file, team, time, &agent)?,
         strata,
         sampling,
-        faults: check.faults(&file.fault, fault_names, team, time, &agent)?,
-        verdict: check.verdict(file.verdict.as_ref().unwrap_or(&VerdictFile::default()))?,
-        channels: check.channels,
-        agent,
-    }))
+    });
+    let groups = begun.into_iter().map(|group| group.finish(&common));
+    Ok(Campaign::new(
+        common.clone(),
+        groups.collect::<Result<_, _>>()?,
+    ))
 }
 
 impl Check<'_> {
+    /// The groups of agents, each with what precedes its keys: those of `[[group]]`, or the one whose tables are at the
+    /// top.
+    fn groups(&self, file: &mut CampaignFile) -> Result<Vec<(String, GroupFile)>, CampaignError> {
+        if file.group.is_empty() {
+            let only = file.take_only_group();
+            let only = only.map_err(|missing| self.source.missing(missing))?;
+            return Ok(vec![(String::new(), only)]);
+        }
+        if let Some(table) = file.group_table_at_the_top() {
+            return Err(self.invalid(
+                table,
+                "given",
+                "in a file with [[group]] each group has this of its own",
+                "move it into the [[group]] that it is about",
+            ));
+        }
+        let groups = std::mem::take(&mut file.group);
+        for (index, group) in groups.iter().enumerate() {
+            let key = format!("group[{index}].name");
+            self.name(&key, &group.name)?;
+            if groups[..index].iter().any(|other| other.name == group.name) {
+                return Err(self.invalid(
+                    key,
+                    format!("{:?}", group.name),
+                    "another group has this name",
+                    "rename one of them",
+                ));
+            }
+        }
+        let groups = groups.into_iter().enumerate();
+        Ok(groups
+            .map(|(index, group)| (format!("group[{index}]."), group))
+            .collect())
+    }
+
     /// A name that can be a folder's and a column's.
     fn name(&self, key: &str, name: &str) -> Result<(), CampaignError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -124,64 +131,6 @@ impl Check<'_> {
             ));
         }
         Ok(())
-    }
-
-    /// The number of agents.
-    fn team(&self, file: &AgentFile) -> Result<usize, CampaignError> {
-        let team = file.team.unwrap_or(1) as usize;
-        if !(1..=64).contains(&team) {
-            return Err(self.invalid(
-                "agent.team",
-                team,
-                "a team has 1 to 64 agents",
-                "give the agents of one episode",
-            ));
-        }
-        Ok(team)
-    }
-
-    /// The strength of the coupling.
-    fn kappa(
-        &self,
-        file: Option<&CouplingFile>,
-        team: usize,
-    ) -> Result<RandomQuantity, CampaignError> {
-        self.of_agents(
-            "coupling.kappa",
-            file.map(|coupling| &coupling.kappa),
-            Some(0.0),
-            SamplingScope::Episode,
-            Bounds::Any,
-            team,
-        )
-    }
-
-    fn disturbances(
-        &self,
-        file: &CampaignFile,
-        team: usize,
-        time: Time,
-        agent: &Agent,
-    ) -> Result<Vec<Disturbance>, CampaignError> {
-        let walks = file.reference.kind == ReferenceKind::Walk;
-        let disturbances = file.disturbance.iter().enumerate();
-        disturbances
-            .map(|(index, own)| self.disturbance(index, own, team, time, agent, walks))
-            .collect()
-    }
-
-    fn faults(
-        &self,
-        files: &[FaultFile],
-        names: Vec<Arc<str>>,
-        team: usize,
-        time: Time,
-        agent: &Agent,
-    ) -> Result<Vec<Fault>, CampaignError> {
-        let faults = files.iter().zip(names).enumerate();
-        faults
-            .map(|(index, (fault, name))| self.fault(index, fault, name, team, time, agent))
-            .collect()
     }
 
     fn time(&self, file: &TimeFile) -> Result<Time, CampaignError> {
@@ -238,21 +187,24 @@ impl Check<'_> {
         Ok(time)
     }
 
-    /// Refuses references that no memory would hold.
-    fn table_fits(
+    /// Refuses more agents than there are addresses for, and references that no memory would hold.
+    fn agents_fit(
         &self,
+        groups: &[Begun<'_>],
         file: &TimeFile,
         time: Time,
-        team: usize,
-        agent: &Agent,
     ) -> Result<(), CampaignError> {
-        let row_bytes = match agent {
-            Agent::Uav(_) => 32,
-            // Beside the reference a row of M(r) and, where limits cut, of its inverse.
-            Agent::Biped(biped) if biped.actuation == ActuationKind::Full => 96,
-            Agent::Biped(_) => 160,
-        };
-        let bytes = f64::from(2 * time.steps + 1) * (team * self.channels.len() * row_bytes) as f64;
+        let agents: usize = groups.iter().map(|group| group.team).sum();
+        if agents > MAX_AGENTS {
+            return Err(self.invalid(
+                "group",
+                format!("{agents} agents"),
+                &format!("all groups together have at most {MAX_AGENTS} agents"),
+                "make the teams smaller",
+            ));
+        }
+        let row_bytes: f64 = groups.iter().map(Begun::row_bytes).sum();
+        let bytes = f64::from(2 * time.steps + 1) * row_bytes;
         if bytes <= MAX_TABLE_BYTES {
             return Ok(());
         }
@@ -260,105 +212,11 @@ impl Check<'_> {
             "time.duration_s",
             file.duration_s,
             &format!(
-                "the references of {team} agents over {} steps would take {:.0} GiB",
+                "the references of {agents} agents over {} steps would take {:.0} GiB",
                 time.steps,
                 bytes / 1_073_741_824.0
             ),
             "shorten it, take longer steps or a smaller team",
         ))
-    }
-
-    fn control(
-        &self,
-        file: &ControlFile,
-        team: usize,
-        time: Time,
-    ) -> Result<Control, CampaignError> {
-        let delay_s = match &file.delay_s {
-            None => None,
-            value => Some(self.of_agents(
-                "control.delay_s",
-                value.as_ref(),
-                None,
-                SamplingScope::Episode,
-                Bounds::Positive,
-                team,
-            )?),
-        };
-        if let Some(delay_s) = &delay_s {
-            self.remembered("control.delay_s", delay_s, time)?;
-        }
-        let hold_steps = match file.rate_hz {
-            None => 1.0,
-            Some(rate_hz) => {
-                let rate_hz = self.number("control.rate_hz", rate_hz, Bounds::Positive)?;
-                let exact = 1.0 / (rate_hz * time.step_s);
-                let steps = exact.round();
-                if steps < 1.0
-                    || steps > f64::from(time.steps)
-                    || (exact - steps).abs() > 1e-6 * exact
-                {
-                    return Err(self.invalid(
-                        "control.rate_hz",
-                        in_toml(rate_hz),
-                        &format!(
-                            "a command is held for whole steps of time.step_s = {}",
-                            in_toml(time.step_s)
-                        ),
-                        &format!(
-                            "use {} for {} steps, or another step",
-                            in_toml(1.0 / (steps.max(1.0) * time.step_s)),
-                            steps.max(1.0)
-                        ),
-                    ));
-                }
-                steps
-            }
-        };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "checked to lie within the steps"
-        )]
-        let hold_steps = hold_steps as u32;
-        Ok(Control {
-            integral: file.integral.unwrap_or(IntegralKind::Exact),
-            delay_s,
-            hold_steps,
-        })
-    }
-
-    fn initial(&self, file: Option<&InitialFile>, team: usize) -> Result<Initial, CampaignError> {
-        let blocks = file.and_then(|file| file.agents.as_deref());
-        self.blocks("initial.agents", blocks, team)?;
-        let of = |name| {
-            let parameter = required(name, Bounds::Any).or(0.0);
-            self.per_channel("initial", file, blocks, parameter, team)
-        };
-        Ok(Initial {
-            error: of("error")?,
-            error_rate: of("error_rate")?,
-            error_integral: of("error_integral")?,
-            observer: file
-                .and_then(|file| file.observer)
-                .unwrap_or(ObserverStart::Measured),
-        })
-    }
-
-    fn verdict(&self, file: &VerdictFile) -> Result<Verdict, CampaignError> {
-        let limit = |key: &str, numbers: &Option<Numbers>| match numbers {
-            None => Ok(vec![f64::INFINITY; self.channels.len()]),
-            some => self.numbers(key, some.as_ref(), 0.0, Bounds::Positive),
-        };
-        Ok(Verdict {
-            max_error: limit("verdict.max_error", &file.max_error)?,
-            max_rmse: limit("verdict.max_rmse", &file.max_rmse)?,
-            settled_error: self.numbers(
-                "verdict.settled_error",
-                file.settled_error.as_ref(),
-                0.05,
-                Bounds::Positive,
-            )?,
-        })
     }
 }

@@ -68,20 +68,14 @@ impl Check<'_> {
         ))
     }
 
-    /// The strata of these faults, which have these names.
+    /// The strata of a campaign's faults, of which the second says whether it is part of the background. Faults of
+    /// different groups may have one name, which stands for all of them.
     pub(super) fn strata(
         &self,
         files: &[StratumFile],
-        faults: &[FaultFile],
-        names: &[Arc<str>],
+        faults: &[(Arc<str>, bool)],
         episodes: u32,
     ) -> Result<Strata, CampaignError> {
-        let background = |fault: &FaultFile| fault.background == Some(true);
-        let faults: Vec<(Arc<str>, bool)> = names
-            .iter()
-            .cloned()
-            .zip(faults.iter().map(background))
-            .collect();
         let mut list: Vec<Stratum> = Vec::new();
         for (index, file) in files.iter().enumerate() {
             let table = format!("strata[{index}]");
@@ -94,7 +88,7 @@ impl Check<'_> {
                     "give the episodes relative to the other strata, or remove the stratum",
                 ));
             }
-            for (name, faults) in self.stratum(&table, file, &faults)? {
+            for (name, faults) in self.stratum(&table, file, faults)? {
                 let key = match file.name {
                     Some(_) => format!("{table}.name"),
                     None => table.clone(),
@@ -167,11 +161,16 @@ impl Check<'_> {
                         "remove it",
                     ));
                 }
-                let own = faults.iter().enumerate();
-                let own = own.filter(|(_, (_, background))| !background);
-                let alone =
-                    own.map(|(k, (name, _))| (name.clone(), StratumFaults::Certain(vec![k])));
-                Ok(alone.collect())
+                let mut alone: Vec<(Arc<str>, Vec<usize>)> = Vec::new();
+                for (k, (name, background)) in faults.iter().enumerate() {
+                    match alone.iter_mut().find(|(own, _)| own == name) {
+                        _ if *background => {}
+                        Some((_, faults)) => faults.push(k),
+                        None => alone.push((name.clone(), vec![k])),
+                    }
+                }
+                let certain = |(name, faults)| (name, StratumFaults::Certain(faults));
+                Ok(alone.into_iter().map(certain).collect())
             }
             StratumFaultsFile::Word(word) => Err(self.invalid(
                 key,
@@ -200,22 +199,26 @@ impl Check<'_> {
         let mut certain = Vec::new();
         for (place, own) in names.iter().enumerate() {
             let key = format!("{key}[{place}]");
-            let known = faults.iter().position(|(name, _)| name.as_ref() == own);
-            let Some(fault) = known else {
-                let all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
+            let named = faults.iter().enumerate();
+            let named = named.filter(|(_, (name, _))| name.as_ref() == own);
+            if named.clone().count() == 0 {
+                let mut all: Vec<&str> = faults.iter().map(|(name, _)| &**name).collect();
+                all.dedup();
                 let limit = format!("the campaign's faults are {}", all.join(", "));
                 let remedy = did_you_mean(own, all, "name one of them");
                 return Err(self.invalid(key, format!("{own:?}"), &limit, &remedy));
-            };
-            if faults[fault].1 {
+            }
+            let drawn = named.filter(|(_, (_, background))| !background);
+            let drawn: Vec<usize> = drawn.map(|(fault, _)| fault).collect();
+            let Some(first) = drawn.first() else {
                 return Err(self.invalid(
                     key,
                     format!("{own:?}"),
                     "this fault is part of the background of all strata",
                     "remove it from the list, or its background = true",
                 ));
-            }
-            if certain.contains(&fault) {
+            };
+            if certain.contains(first) {
                 return Err(self.invalid(
                     key,
                     format!("{own:?}"),
@@ -223,7 +226,7 @@ impl Check<'_> {
                     "name it once",
                 ));
             }
-            certain.push(fault);
+            certain.extend(drawn);
         }
         Ok(certain)
     }

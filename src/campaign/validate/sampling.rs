@@ -1,11 +1,11 @@
 //! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
 
 use crate::campaign::check::Check;
+use crate::campaign::common::Requirement;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::parameter::Bounds;
 use crate::campaign::plan::{ALL, Goal, Sampling, Stop, Strata};
-use crate::campaign::validated::Requirement;
 use crate::random::{MOST_ENTRIES, Method, allows};
 use crate::util::suggest::did_you_mean;
 use std::sync::Arc;
@@ -18,8 +18,13 @@ const EVERY: u32 = 64;
 const CONFIDENCE: f64 = 0.95;
 
 impl Check<'_> {
-    /// The sampling design, and whether it can be had of this campaign.
-    pub(super) fn sampling(&self, file: &CampaignFile) -> Result<Sampling, CampaignError> {
+    /// The sampling design, and whether it can be had of this campaign, whose largest group has so many disturbances or
+    /// faults.
+    pub(super) fn sampling(
+        &self,
+        file: &CampaignFile,
+        entries: Option<usize>,
+    ) -> Result<Sampling, CampaignError> {
         let own = file.sampling.clone().unwrap_or_default();
         let replicates = own.replicates.unwrap_or(REPLICATES);
         let (sampling, name) = match own.design.unwrap_or(DesignFile::Independent) {
@@ -48,7 +53,7 @@ impl Check<'_> {
                 "use \"independent\", or remove [[strata]]",
             );
         }
-        if file.disturbance.len().max(file.fault.len()) > MOST_ENTRIES {
+        if entries.is_some_and(|entries| entries > MOST_ENTRIES) {
             return refused(
                 &format!("a design has at most {MOST_ENTRIES} disturbances and as many faults"),
                 "use \"independent\"",

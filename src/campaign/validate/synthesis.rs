@@ -2,9 +2,10 @@
 
 use crate::agent::{ActuationKind, Agent, ChannelRole};
 use crate::campaign::check::Check;
+use crate::campaign::common::{BUILT_IN, FTC};
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::validated::{BUILT_IN, FTC, GainSource, NamedGains};
+use crate::campaign::group::{GainSource, NamedGains};
 use crate::synthesis::{ChannelDesign, Preset, SmoothingRule, SynthesisError};
 use crate::util::suggest::did_you_mean;
 
@@ -85,31 +86,38 @@ impl Check<'_> {
         })
     }
 
-    /// The controllers to compare.
+    /// The controllers to compare: those that need no file, and those that every group names.
     pub(super) fn controllers(
         &self,
         names: Option<&[String]>,
-        source: &GainSource,
+        sources: &[&GainSource],
     ) -> Result<Vec<String>, CampaignError> {
-        let Some(names) = names else {
-            let named = source.named.iter().map(|named| named.name.clone());
-            return Ok(BUILT_IN
-                .into_iter()
-                .map(String::from)
-                .chain(named)
-                .collect());
+        let has = |source: &&GainSource, name: &String| {
+            source.named.iter().any(|named| named.name == *name)
         };
-        let named = source.named.iter().map(|named| named.name.as_str());
-        let known: Vec<&str> = BUILT_IN.into_iter().chain(named).collect();
-        if let Some(at) = names
-            .iter()
-            .position(|name| !known.contains(&name.as_str()))
-        {
+        let named = sources.first().map_or(&[][..], |source| &source.named);
+        let named = named.iter().map(|named| named.name.clone());
+        let named = named.filter(|name| sources.iter().all(|source| has(source, name)));
+        let known: Vec<String> = BUILT_IN
+            .into_iter()
+            .map(String::from)
+            .chain(named)
+            .collect();
+        let Some(names) = names else {
+            return Ok(known);
+        };
+        if let Some(at) = names.iter().position(|name| !known.contains(name)) {
+            let name = &names[at];
+            let limit = format!("the controllers are {}", known.join(", "));
+            let remedy = match sources.iter().any(|source| has(source, name)) {
+                true => format!("give every group a [group.synthesis.named.{name}]"),
+                false => did_you_mean(name, known.iter().map(String::as_str), "take one of them"),
+            };
             return Err(self.invalid(
                 format!("controllers[{at}]"),
-                format!("{:?}", names[at]),
-                &format!("the controllers are {}", known.join(", ")),
-                &did_you_mean(&names[at], known, "take one of them"),
+                format!("{name:?}"),
+                &limit,
+                &remedy,
             ));
         }
         if names.is_empty() || (1..names.len()).any(|k| names[..k].contains(&names[k])) {

@@ -1,13 +1,13 @@
 //! A block of episodes, one per lane, and the numbers of their draws side by side.
 
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::draw::{AgentDraw, Episode};
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
 /// A block of episodes, one per lane; lanes without one repeat the last.
 #[derive(Clone, Copy)]
 pub(crate) struct LaneBlock<'a> {
-    pub(crate) campaign: &'a Campaign,
+    pub(crate) group: &'a AgentGroup,
     pub(crate) episodes: &'a [Episode],
 }
 
@@ -51,7 +51,7 @@ impl LaneBlock<'_> {
 
     /// Turns per half step of frequencies in Hz.
     pub(super) fn advance<L: Lane>(&self, frequency_hz: [f64; MAX_WIDTH]) -> L::Turns {
-        L::turns(&frequency_hz.map(|frequency| frequency * self.campaign.time.step_s / 2.0))
+        L::turns(&frequency_hz.map(|frequency| frequency * self.group.time.step_s / 2.0))
     }
 }
 

@@ -1,20 +1,20 @@
 //! When what acts on an agent begins and ends.
 
 use super::block::small;
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::campaign::kinds::{GUST_DURATION, GUST_ONSET};
 use crate::draw::AgentDraw;
 
 /// The steps at which what an agent meets begins or ends.
 #[must_use]
-pub(crate) fn changes(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
-    let time = campaign.time;
+pub(crate) fn changes(group: &AgentGroup, draw: &AgentDraw) -> Vec<u32> {
+    let time = group.time;
     let faults = draw.faults.iter().filter(|fault| fault.occurs());
     let ends = faults
         .filter(|fault| fault.duration_s.is_finite())
         .map(|fault| fault.end_step(time));
     // What begins and ends by parameters of its own.
-    let spans = campaign.disturbances.iter().zip(&draw.disturbances);
+    let spans = group.disturbances.iter().zip(&draw.disturbances);
     let spans = spans.filter_map(|(disturbance, values)| {
         let parameters = disturbance.kind.parameters();
         let onset_s = &values[GUST_ONSET.place_in(parameters)?];
@@ -28,17 +28,17 @@ pub(crate) fn changes(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
             onset.saturating_add(small(time.whole_steps(duration_s))),
         ]
     });
-    let begins = later_onsets(campaign, draw);
+    let begins = later_onsets(group, draw);
     begins.into_iter().chain(ends).chain(gusts).collect()
 }
 
 /// The steps at which an agent's faults begin, apart from those that begin with the run.
 #[must_use]
-pub(crate) fn later_onsets(campaign: &Campaign, draw: &AgentDraw) -> Vec<u32> {
+pub(crate) fn later_onsets(group: &AgentGroup, draw: &AgentDraw) -> Vec<u32> {
     draw.faults
         .iter()
         .filter(|fault| fault.occurs())
-        .map(|fault| campaign.time.onset_step(fault.onset_s))
+        .map(|fault| group.time.onset_step(fault.onset_s))
         .filter(|&step| step > 0)
         .collect()
 }

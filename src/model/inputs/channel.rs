@@ -31,16 +31,16 @@ impl LaneBlock<'_> {
         first: usize,
         entries: Selection,
     ) -> ChannelInputs<L, NC> {
-        let campaign = self.campaign;
+        let group = self.group;
         let mut signals = ExogenousInputs::none();
-        signals.hold_steps = campaign.control.hold_steps;
-        if campaign.control.delay_s.is_some() {
+        signals.hold_steps = group.control.hold_steps;
+        if group.control.delay_s.is_some() {
             signals.lists.command_rings.push(self.control_delay(agent));
         }
-        for (index, disturbance) in campaign.disturbances.iter().enumerate() {
+        for (index, disturbance) in group.disturbances.iter().enumerate() {
             self.add_disturbance(&mut signals, disturbance, index, agent, first, entries);
         }
-        for (index, fault) in campaign.faults.iter().enumerate() {
+        for (index, fault) in group.faults.iter().enumerate() {
             let lanes = FaultLanes {
                 block: self,
                 fault,
@@ -51,12 +51,12 @@ impl LaneBlock<'_> {
             lanes.add(&mut signals, entries);
         }
         // A biped's scale is that of M and H as a whole.
-        let inertia = match &campaign.agent {
+        let inertia = match &group.agent {
             Agent::Uav(uav) => inertia(uav).to_vec(),
-            Agent::Biped(_) => vec![1.0; campaign.channels().len()],
+            Agent::Biped(_) => vec![1.0; group.channels().len()],
         };
         let turns =
-            |channel: usize| matches!(campaign.agent, Agent::Uav(_)) && channel >= FIRST_ATTITUDE;
+            |channel: usize| matches!(group.agent, Agent::Uav(_)) && channel >= FIRST_ATTITUDE;
         let channel = |pick: &dyn Fn(&AgentDraw) -> f64| -> L { self.load(agent, pick) };
         signals.first_inverse_inertia = std::array::from_fn(|c| {
             channel(&|draw| {
@@ -80,7 +80,7 @@ impl LaneBlock<'_> {
             kappa: channel(&|draw| draw.kappa),
             vortices: self.vortices::<L, NC>(agent, first, entries),
             first_fault: channel(&|draw| {
-                later_onsets(campaign, draw)
+                later_onsets(group, draw)
                     .into_iter()
                     .map(f64::from)
                     .fold(f64::INFINITY, f64::min)
@@ -90,7 +90,7 @@ impl LaneBlock<'_> {
 
     /// The delay of a control loop, which is there from the start to the end.
     fn control_delay<L: Lane, const NC: usize>(&self, agent: usize) -> DelayLine<L, NC, 1> {
-        let steps = |draw: &AgentDraw| self.campaign.time.whole_steps(draw.control_delay_s);
+        let steps = |draw: &AgentDraw| self.group.time.whole_steps(draw.control_delay_s);
         let lengths = self.lanes::<L>(agent, steps).map(small);
         DelayLine::new(true, [Window::always(L::number(1.0)); NC], [lengths; NC])
     }

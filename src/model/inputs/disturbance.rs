@@ -109,7 +109,7 @@ impl LaneBlock<'_> {
         if first > 0 || NC <= HEIGHT {
             return Vec::new();
         }
-        let all = self.campaign.disturbances.iter().enumerate();
+        let all = self.group.disturbances.iter().enumerate();
         let felt = all.filter(|(_, disturbance)| disturbance.kind == DisturbanceKind::RotorVortex);
         felt.filter_map(|(index, felt)| {
             let of = |parameter: &Parameter, pick: fn(f64) -> f64| {
@@ -135,7 +135,7 @@ impl LaneBlock<'_> {
         onset_s: [f64; MAX_WIDTH],
         duration_s: [f64; MAX_WIDTH],
     ) -> Oscillation<L> {
-        let time = self.campaign.time;
+        let time = self.group.time;
         let onsets = onset_s.map(|onset_s| f64::from(time.onset_step(onset_s)));
         let steps = duration_s.map(|duration_s| time.whole_steps(duration_s));
         // A quarter turn back, the sine is at its bottom.
@@ -164,9 +164,9 @@ impl LaneBlock<'_> {
         index: usize,
         first: usize,
     ) -> Turbulence<L, NC> {
-        let campaign = self.campaign;
+        let group = self.group;
         let entry = u32::try_from(index).unwrap_or(u32::MAX);
-        let members = std::array::from_fn(|c| member(agent, first + c));
+        let members = std::array::from_fn(|c| member(group.first_agent + agent, first + c));
         let filter = |c: usize, draw: &AgentDraw| {
             let of = |parameter: &Parameter| {
                 parameter.value(
@@ -181,7 +181,7 @@ impl LaneBlock<'_> {
                     altitude_m: of(&ALTITUDE),
                     airspeed_m_s: of(&AIRSPEED),
                 };
-                wind.filter(first + c, of(&WIND_GAIN), campaign.time.step_s)
+                wind.filter(first + c, of(&WIND_GAIN), group.time.step_s)
             } else {
                 Filter::still()
             }
@@ -196,7 +196,7 @@ impl LaneBlock<'_> {
                     member: members[c],
                     index: u32::MAX,
                 };
-                for (state, own) in state.iter_mut().zip(at_rest(address, campaign.seed)) {
+                for (state, own) in state.iter_mut().zip(at_rest(address, group.seed)) {
                     state[lane] = own;
                 }
             }

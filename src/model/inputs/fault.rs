@@ -50,7 +50,7 @@ impl FaultLanes<'_> {
         if !listed {
             return;
         }
-        let step_s = self.block.campaign.time.step_s;
+        let step_s = self.block.group.time.step_s;
         signals.rises |= fault.ramp_s.is_some() || fault.kind == FaultKind::Drift;
         let lists = &mut signals.lists;
         let values = |parameter: &Parameter, c: usize| self.values::<L>(parameter, c);
@@ -168,7 +168,7 @@ impl FaultLanes<'_> {
 
     /// A value from the fault's onset to its end, along its ramp.
     fn switch<L: Lane>(&self, c: usize, value: [f64; MAX_WIDTH]) -> Window<L> {
-        let time = self.block.campaign.time;
+        let time = self.block.group.time;
         let struck = |pick: &dyn Fn(&FaultDraw) -> f64| -> L {
             let of_lanes = self.lanes::<L>(&|draw| {
                 if draw.strikes[self.first + c] {
@@ -207,7 +207,7 @@ impl FaultLanes<'_> {
 
     /// What a drift amounts to at the end of the run, if nothing ends it before.
     fn drifted<L: Lane>(&self, c: usize) -> [f64; MAX_WIDTH] {
-        let step_s = self.block.campaign.time.step_s;
+        let step_s = self.block.group.time.step_s;
         self.lanes::<L>(&|draw| {
             self.value(draw, &DRIFT_RATE, self.first + c) * self.steps_left(draw) * step_s
         })
@@ -215,7 +215,7 @@ impl FaultLanes<'_> {
 
     /// Steps from the onset to the end of the run, both of which are shown.
     fn steps_left(&self, draw: &FaultDraw) -> f64 {
-        let time = self.block.campaign.time;
+        let time = self.block.group.time;
         f64::from(time.steps - time.onset_step(draw.onset_s) + 1)
     }
 
@@ -229,11 +229,12 @@ impl FaultLanes<'_> {
 
     /// Addresses of the channels; a link fails as a whole.
     fn members<const NC: usize>(&self) -> [u32; NC] {
+        let agent = self.block.group.first_agent + self.agent;
         std::array::from_fn(|c| {
             if self.is_link() {
-                member(self.agent, 0)
+                member(agent, 0)
             } else {
-                member(self.agent, self.first + c)
+                member(agent, self.first + c)
             }
         })
     }
@@ -246,7 +247,7 @@ impl FaultLanes<'_> {
         slot_s: Option<&Parameter>,
         share: Option<&Parameter>,
     ) -> IntermittentWindow<L, NC> {
-        let time = self.block.campaign.time;
+        let time = self.block.group.time;
         IntermittentWindow {
             entry: self.entry(),
             together: self.is_link(),
@@ -287,7 +288,7 @@ impl FaultLanes<'_> {
 
     /// Samples that a delay or a replay keeps; a replay has recorded nothing before the start.
     fn ring_steps<L: Lane>(&self, c: usize) -> [u32; MAX_WIDTH] {
-        let time = self.block.campaign.time;
+        let time = self.block.group.time;
         let steps = self.lanes::<L>(&|draw| {
             let steps =
                 |length_s: &Parameter| time.whole_steps(self.value(draw, length_s, self.first + c));
@@ -301,7 +302,7 @@ impl FaultLanes<'_> {
 
     fn plant_change<L: Lane>(&self, c: usize) -> [PlantChange; MAX_WIDTH] {
         let channel = self.first + c;
-        let agent = &self.block.campaign.agent;
+        let agent = &self.block.group.agent;
         let change = |draw: &AgentDraw| {
             let of =
                 |parameter: &Parameter| self.value(&draw.faults[self.index], parameter, channel);

@@ -3,6 +3,7 @@
 use super::episode_data::{ControllerTrace, EpisodeView};
 use super::frame::Frame;
 use crate::agent::{ActuationKind, Agent, FIRST_ATTITUDE};
+use crate::campaign::AgentGroup;
 use crate::model::ChannelSample;
 use crate::report::page::document::{Figure, LegendEntry};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
@@ -153,13 +154,14 @@ pub(super) fn panel(
     if let (Some(estimate), Some(first)) = (quantity.estimate(), shown.first()) {
         draw(first, estimate, view.estimate_color(), Stroke::Dashed);
     }
-    let robot = matches!(view.campaign.agent, Agent::Biped(_));
-    let unit = quantity.unit(view.campaign.unit(channel), robot);
+    let group = view.group(agent);
+    let robot = matches!(group.agent, Agent::Biped(_));
+    let unit = quantity.unit(group.unit(channel), robot);
     let failed = shown.iter().filter_map(|trace| {
         let t_s = view.failed_at_s(trace, agent)?;
         Some((t_s, trace.color()))
     });
-    let name = &view.campaign.channels()[channel];
+    let name = &group.channels()[channel];
     let panel = Plot {
         title: name.to_string(),
         x: Axis {
@@ -172,7 +174,7 @@ pub(super) fn panel(
         },
         marks,
         spans: view.windows(agent, channel),
-        levels: limits(view, quantity, channel),
+        levels: limits(group, quantity, channel),
         moments: failed.collect(),
         ..Plot::default()
     };
@@ -200,13 +202,13 @@ fn frame(view: &EpisodeView<'_>, quantity: Quantity, at: (usize, usize)) -> Opti
         .traces
         .iter()
         .any(|trace| trace.outcomes[at.0].diverged);
-    Some(frame.with(&limits(view, quantity, at.1)))
+    Some(frame.with(&limits(view.group(at.0), quantity, at.1)))
 }
 
 /// The limits of a command, where they cut.
-fn limits(view: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f64> {
+fn limits(group: &AgentGroup, quantity: Quantity, channel: usize) -> Vec<f64> {
     let both = |limit: f64| vec![-limit, limit];
-    match (&view.campaign.agent, quantity) {
+    match (&group.agent, quantity) {
         (_, quantity) if quantity != Quantity::Command => Vec::new(),
         (Agent::Uav(uav), _) if uav.actuation == ActuationKind::Thrust => match channel {
             FIRST_ATTITUDE.. => both(uav.max_torque_n_m),
@@ -223,7 +225,7 @@ fn limits(view: &EpisodeView<'_>, quantity: Quantity, channel: usize) -> Vec<f64
 
 /// An agent's quantity, a panel for each channel.
 pub(super) fn figure(view: &EpisodeView<'_>, quantity: Quantity, agent: usize) -> Figure {
-    let channels = 0..view.campaign.channels().len();
+    let channels = 0..view.group(agent).channels().len();
     let drawn: Vec<(Plot, bool)> = channels
         .map(|channel| panel(view, quantity, (agent, channel), &view.traces))
         .collect();
@@ -231,7 +233,7 @@ pub(super) fn figure(view: &EpisodeView<'_>, quantity: Quantity, agent: usize) -
     let failed = drawn.iter().any(|(panel, _)| !panel.moments.is_empty());
     Figure {
         legend: legend(view, quantity, agent, &drawn),
-        caption: caption(view, quantity, failed, cut),
+        caption: caption(view.group(agent), quantity, failed, cut),
         panels: drawn.into_iter().map(|(panel, _)| panel).collect(),
     }
 }
@@ -256,7 +258,7 @@ fn legend(
         Quantity::Error | Quantity::Command => {}
     }
     for trace in &view.traces {
-        let estimates = (0..view.campaign.channels().len()).any(|channel| {
+        let estimates = (0..view.group(agent).channels().len()).any(|channel| {
             let curve = view.curve(trace, (agent, channel), quantity.simulated());
             curve.iter().any(|(_, value)| *value != 0.0)
         });
@@ -288,7 +290,7 @@ fn legend(
 }
 
 /// What a figure shows; `failed` is whether an episode failed, `cut` whether a curve leaves its frame.
-fn caption(view: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool) -> String {
+fn caption(group: &AgentGroup, quantity: Quantity, failed: bool, cut: bool) -> String {
     let mut caption = sentence(quantity.name());
     let mut add = |sentence: &str| {
         caption.push(' ');
@@ -299,12 +301,12 @@ fn caption(view: &EpisodeView<'_>, quantity: Quantity, failed: bool, cut: bool) 
             "f1 lumps everything that the feedforward does not cancel: faults, disturbances, coupling, model errors.",
         ),
         Quantity::SensorFault => add("f2 is what the rate is measured too large by."),
-        Quantity::Command if !view.campaign.is_limited() => {
+        Quantity::Command if !group.is_limited() => {
             add("The command that acts, after faults; no limit cuts it in this campaign.");
         }
         Quantity::Command => {
             add("The command that acts, after limits and faults.");
-            if view.campaign.agent.actuation() == ActuationKind::Thrust {
+            if group.agent.actuation() == ActuationKind::Thrust {
                 add(
                     "x, y and z are the force demanded, of which the thrust along the body axis gives what it can.",
                 );

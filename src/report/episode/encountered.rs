@@ -15,12 +15,16 @@ const MOST_LISTED: usize = 3;
 /// The draw of the episode.
 pub(super) fn section(view: &EpisodeView<'_>) -> Section {
     let mut blocks = vec![faults(view)];
-    if !view.campaign.disturbances.is_empty() {
-        let summary = match view.campaign.disturbances.len() {
-            1 => "one disturbance of each agent".to_string(),
-            count => format!("{count} disturbances of each agent"),
-        };
-        blocks.push(Block::Folded(summary, vec![disturbances(view)]));
+    let groups = view.campaign.groups().iter();
+    let of_groups = groups.map(|group| match group.disturbances.len() {
+        0 => group.titled("no disturbance"),
+        1 => group.titled("one disturbance of each agent"),
+        count => group.titled(&format!("{count} disturbances of each agent")),
+    });
+    let disturbances = disturbances(view);
+    if !disturbances.rows.is_empty() {
+        let summary = of_groups.collect::<Vec<_>>().join(", ");
+        blocks.push(Block::Folded(summary, vec![Block::Grid(disturbances)]));
     }
     let summary = "model errors, coupling and initial errors".to_string();
     blocks.push(Block::Folded(summary, vec![conditions(view)]));
@@ -38,13 +42,14 @@ fn faults(view: &EpisodeView<'_>) -> Block {
         "ramp",
         "parameters",
     ]);
-    for (agent, draw) in view.episode.agents.iter().enumerate() {
-        for (place, (fault, drawn)) in view.campaign.faults.iter().zip(&draw.faults).enumerate() {
+    for agent in 0..view.campaign.agents() {
+        let (group, draw) = (view.group(agent), view.draw(agent));
+        for (place, (fault, drawn)) in group.faults.iter().zip(&draw.faults).enumerate() {
             if !drawn.occurs() {
                 continue;
             }
             let (from_s, until_s) = view.window(drawn);
-            let names = view.campaign.channels().iter().zip(&drawn.strikes);
+            let names = group.channels().iter().zip(&drawn.strikes);
             let struck: Vec<&str> = names
                 .filter(|(_, strikes)| **strikes)
                 .map(|(name, _)| &**name)
@@ -53,7 +58,7 @@ fn faults(view: &EpisodeView<'_>) -> Block {
                 all if all == drawn.strikes.len() => "all".to_string(),
                 _ => struck.join(", "),
             };
-            let parameters = parameters(view, draw, |source| source == Source::Fault(place));
+            let parameters = parameters(view, agent, |source| source == Source::Fault(place));
             let target = fault.target.name();
             let strikes = match (target, fault.link) {
                 ("network", Link::Command) => "network, command",
@@ -84,12 +89,12 @@ fn faults(view: &EpisodeView<'_>) -> Block {
     }
 }
 
-fn disturbances(view: &EpisodeView<'_>) -> Block {
+fn disturbances(view: &EpisodeView<'_>) -> Grid {
     let mut grid = Grid::new(["agent", "disturbance", "parameters"]);
-    for (agent, draw) in view.episode.agents.iter().enumerate() {
-        for (place, disturbance) in view.campaign.disturbances.iter().enumerate() {
+    for agent in 0..view.campaign.agents() {
+        for (place, disturbance) in view.group(agent).disturbances.iter().enumerate() {
             let source = Source::Disturbance(place, disturbance.kind);
-            let parameters = parameters(view, draw, |own| own == source);
+            let parameters = parameters(view, agent, |own| own == source);
             grid.rows.push(vec![
                 Cell::number(agent.to_string()),
                 Cell::text(disturbance.kind.name()),
@@ -97,7 +102,7 @@ fn disturbances(view: &EpisodeView<'_>) -> Block {
             ]);
         }
     }
-    Block::Grid(grid)
+    grid
 }
 
 fn conditions(view: &EpisodeView<'_>) -> Block {
@@ -110,7 +115,7 @@ fn conditions(view: &EpisodeView<'_>) -> Block {
         "initial error (RMS)",
         "of the rate (RMS)",
     ]);
-    for (agent, draw) in view.episode.agents.iter().enumerate() {
+    for agent in 0..view.campaign.agents() {
         let AgentDraw {
             mass_scale,
             inertia_scale,
@@ -119,7 +124,7 @@ fn conditions(view: &EpisodeView<'_>) -> Block {
             error,
             error_rate,
             ..
-        } = draw;
+        } = view.draw(agent);
         grid.rows.push(vec![
             Cell::number(agent.to_string()),
             Cell::number(number(*mass_scale)),
@@ -136,14 +141,14 @@ fn conditions(view: &EpisodeView<'_>) -> Block {
 /// The parameters of a disturbance or fault with an agent's values.
 fn parameters<'a>(
     view: &'a EpisodeView<'_>,
-    draw: &'a AgentDraw,
+    agent: usize,
     is_of: impl Fn(Source) -> bool + 'a,
 ) -> impl Iterator<Item = String> + 'a {
-    let own = view.quantities.iter();
+    let own = view.quantities(agent).iter();
     let own = own.filter(move |own| own.is_parameter() && is_of(own.source));
-    own.map(|quantity| {
-        let names = view.campaign.channels();
-        let values = quantity.applied(draw);
+    own.map(move |quantity| {
+        let names = view.group(agent).channels();
+        let values = quantity.applied(view.draw(agent));
         let values: Vec<_> = values.map(|(k, value)| (&names[k], value)).collect();
         valued(quantity.name, &values)
     })

@@ -1,14 +1,15 @@
 //! An episode with all that was simulated in it: what every figure looks things up in.
 
-use crate::campaign::Campaign;
+use crate::campaign::{AgentGroup, Campaign};
 use crate::draw::quantities::{Quantity, quantities};
-use crate::draw::{AppliedEpisode, FaultDraw, draw};
+use crate::draw::{AgentDraw, AppliedEpisode, FaultDraw, draw};
 use crate::model::ChannelSample;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::report::page::plot::{Color, thinned};
 use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 /// Points of a curve: one per pixel of a panel.
 const POINTS: usize = 400;
@@ -34,10 +35,10 @@ impl ControllerTrace<'_> {
 pub(super) struct EpisodeView<'a> {
     pub(super) replay: &'a Replay,
     pub(super) campaign: &'a Campaign,
-    /// What it drew, with times as they happen.
-    pub(super) episode: AppliedEpisode,
-    /// What the campaign draws.
-    pub(super) quantities: Vec<Quantity>,
+    /// What each group of agents drew, with times as they happen.
+    draws: Vec<AppliedEpisode>,
+    /// What is drawn for each group of agents.
+    quantities: Vec<Vec<Quantity>>,
     /// The episode under each controller, that of the one that was asked for first.
     pub(super) traces: Vec<ControllerTrace<'a>>,
     pub(super) duration_s: f64,
@@ -52,6 +53,7 @@ impl<'a> EpisodeView<'a> {
             outcomes,
             snapshots,
         };
+        let groups = || campaign.groups().iter();
         let asked = trace(replay.controller, &*replay.outcomes, &*replay.snapshots);
         let others = replay
             .others
@@ -60,11 +62,34 @@ impl<'a> EpisodeView<'a> {
         Self {
             replay,
             campaign,
-            episode: draw(campaign, replay.episode).applied(campaign),
-            quantities: quantities(campaign),
+            draws: groups()
+                .map(|group| draw(group, replay.episode).applied(group))
+                .collect(),
+            quantities: groups().map(|group| quantities(group)).collect(),
             traces: std::iter::once(asked).chain(others).collect(),
             duration_s: f64::from(campaign.time.steps) * campaign.time.step_s,
         }
+    }
+
+    /// The group of an agent.
+    pub(super) fn group(&self, agent: usize) -> &'a AgentGroup {
+        self.campaign.member(agent).0
+    }
+
+    /// The agents of a group.
+    pub(super) fn agents_of(group: &AgentGroup) -> Range<usize> {
+        group.first_agent..group.first_agent + group.team
+    }
+
+    /// What an agent drew.
+    pub(super) fn draw(&self, agent: usize) -> &AgentDraw {
+        let (_, own) = self.campaign.member(agent);
+        &self.draws[self.campaign.group_index(agent)].agents[own]
+    }
+
+    /// What is drawn for an agent.
+    pub(super) fn quantities(&self, agent: usize) -> &[Quantity] {
+        &self.quantities[self.campaign.group_index(agent)]
     }
 
     /// The episode under the controller that was asked for.
@@ -167,7 +192,7 @@ impl<'a> EpisodeView<'a> {
 
     /// When faults struck a channel, s: from the step at which one comes to that at which it goes.
     pub(super) fn windows(&self, agent: usize, channel: usize) -> Vec<(f64, f64)> {
-        let faults = self.episode.agents[agent].faults.iter();
+        let faults = self.draw(agent).faults.iter();
         let striking = faults.filter(|fault| fault.strikes.get(channel) == Some(&true));
         striking.map(|fault| self.window(fault)).collect()
     }
@@ -182,7 +207,7 @@ impl<'a> EpisodeView<'a> {
 
     /// The agents, from the one that fared worst under the controller that was asked for.
     pub(super) fn worst_first(&self) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.campaign.team).collect();
+        let mut order: Vec<usize> = (0..self.campaign.agents()).collect();
         order.sort_by(|&a, &b| self.fared(b, a));
         order
     }
@@ -194,7 +219,7 @@ impl<'a> EpisodeView<'a> {
     /// Compares how badly two agents fared: by their verdicts, then who failed first, then the errors.
     fn fared(&self, a: usize, b: usize) -> Ordering {
         let outcomes = self.asked().outcomes;
-        let verdict = |agent: usize| -> Status { status(self.campaign, &outcomes[agent]) };
+        let verdict = |agent: usize| -> Status { status(self.group(agent), &outcomes[agent]) };
         let lasted = |agent: usize| outcomes[agent].failed_step.unwrap_or(u32::MAX);
         verdict(a)
             .cmp(&verdict(b))
@@ -208,7 +233,7 @@ impl<'a> EpisodeView<'a> {
         let errors = outcome
             .channels
             .iter()
-            .zip(&self.campaign.verdict.settled_error);
+            .zip(&self.group(agent).verdict.settled_error);
         // In units of what counts as settled: metres and radians are not compared.
         let errors = errors.map(|(metrics, settled)| match metrics.rmse / settled {
             error if error.is_nan() => f64::INFINITY,

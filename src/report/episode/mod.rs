@@ -48,17 +48,16 @@ fn document(view: &EpisodeView<'_>) -> Document {
     let campaign = view.campaign;
     let asked = view.asked();
     let mut sections = vec![errors(view), encountered::section(view)];
-    sections.push(match campaign.agent {
-        Agent::Uav(_) => path::section(view),
-        Agent::Biped(ref biped) => walk::section(view, &biped.robot),
-    });
+    sections.extend(campaign.groups().iter().map(|group| match &group.agent {
+        Agent::Uav(_) => path::section(view, group),
+        Agent::Biped(biped) => walk::section(view, group, &biped.robot),
+    }));
     sections.extend(agents(view));
     Document {
-        title: format!("Episode {} of {}", view.episode.index, campaign.name),
+        title: format!("Episode {} of {}", view.replay.episode, campaign.name),
         subtitle: format!(
-            "{} {} over {} s; {} beside {}; seed {}",
-            campaign.team,
-            campaign.agent.noun(campaign.team),
+            "{} over {} s; {} beside {}; seed {}",
+            campaign.agents_in_words(),
             view.duration_s,
             asked.name,
             match &*view.others().map(|trace| trace.name).collect::<Vec<_>>() {
@@ -88,10 +87,10 @@ fn document(view: &EpisodeView<'_>) -> Document {
 
 /// How the episode ended under a controller, in a sentence.
 fn ending(view: &EpisodeView<'_>, trace: &ControllerTrace<'_>) -> String {
-    let failed: Vec<String> = (0..view.campaign.team)
+    let failed: Vec<String> = (0..view.campaign.agents())
         .filter_map(|agent| {
             let outcome = &trace.outcomes[agent];
-            let how = match (status(view.campaign, outcome), outcome.failed_step) {
+            let how = match (status(view.group(agent), outcome), outcome.failed_step) {
                 (Status::Ok, _) => return None,
                 (Status::Exceeded, Some(_)) => "broke max_error",
                 (Status::Exceeded, None) => "broke max_rmse",
@@ -108,7 +107,7 @@ fn ending(view: &EpisodeView<'_>, trace: &ControllerTrace<'_>) -> String {
         .collect();
     let name = trace.name;
     match &*failed {
-        [] if view.campaign.team == 1 => format!("{name}: ok, within the limits."),
+        [] if view.campaign.agents() == 1 => format!("{name}: ok, within the limits."),
         [] => format!("{name}: ok, every agent within the limits."),
         failed => format!("{name}: {}.", failed.join(", ")),
     }
@@ -117,7 +116,7 @@ fn ending(view: &EpisodeView<'_>, trace: &ControllerTrace<'_>) -> String {
 /// The errors in numbers.
 fn errors(view: &EpisodeView<'_>) -> Section {
     let worst = view.worst_agent();
-    let others: Vec<Block> = (0..view.campaign.team)
+    let others: Vec<Block> = (0..view.campaign.agents())
         .filter(|&agent| agent != worst)
         .flat_map(|agent| {
             [
@@ -136,7 +135,7 @@ fn errors(view: &EpisodeView<'_>) -> Section {
     let mut blocks = vec![
         Block::text(format!(
             "Agent {worst}{}: RMS error / largest error from {} s on{bounded}.",
-            match view.campaign.team {
+            match view.campaign.agents() {
                 1 => "",
                 _ => ", which fared worst",
             },
@@ -145,7 +144,7 @@ fn errors(view: &EpisodeView<'_>) -> Section {
         Block::Grid(errors_of(view, worst)),
     ];
     if !others.is_empty() {
-        let title = format!("the other {}", view.campaign.agent.plural());
+        let title = format!("the other {}", view.campaign.plural());
         blocks.push(Block::Folded(title, others));
     }
     if view.is_bounded() {
@@ -180,8 +179,9 @@ fn errors_of(view: &EpisodeView<'_>, agent: usize) -> Grid {
         let heads = ["attenuation", "certified", "(24)"];
         grid.head.extend(heads.map(String::from));
     }
-    for (channel, name) in view.campaign.channels().iter().enumerate() {
-        let unit = view.campaign.unit(channel);
+    let group = view.group(agent);
+    for (channel, name) in group.channels().iter().enumerate() {
+        let unit = group.unit(channel);
         let mut row = vec![Cell::text(format!("{name},\u{a0}{unit}"))];
         row.extend(view.traces.iter().map(|trace| {
             let metrics = &trace.outcomes[agent].channels[channel];
@@ -209,10 +209,19 @@ fn errors_of(view: &EpisodeView<'_>, agent: usize) -> Grid {
 
 /// The curves: those of the agent that fared worst, and then, folded, of the others.
 fn agents(view: &EpisodeView<'_>) -> Vec<Section> {
-    let channels = view.campaign.channels().len();
     let order = view.worst_first();
-    let in_full = channels * order.len() <= MOST_IN_FULL;
-    let drawn = (MOST_CHANNELS / channels).clamp(1, order.len());
+    // Channels of an agent and of all that fared worse.
+    let mut channels = 0;
+    let channels: Vec<usize> = order
+        .iter()
+        .map(|&agent| {
+            channels += view.group(agent).channels().len();
+            channels
+        })
+        .collect();
+    let in_full = channels.last().is_some_and(|all| *all <= MOST_IN_FULL);
+    let fitting = channels.iter().filter(|own| **own <= MOST_CHANNELS).count();
+    let drawn = fitting.max(1);
     let full = |agent: usize| -> Vec<Block> {
         Quantity::ALL
             .into_iter()
@@ -238,7 +247,7 @@ fn agents(view: &EpisodeView<'_>) -> Vec<Section> {
         ));
     }
     if order.len() > 1 {
-        let title = format!("The other {}", view.campaign.agent.plural());
+        let title = format!("The other {}", view.campaign.plural());
         sections.push(Section::new(title, folded));
     }
     sections

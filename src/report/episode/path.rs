@@ -2,9 +2,11 @@
 
 use super::episode_data::{ControllerTrace, EpisodeView};
 use super::frame::Frame;
+use crate::campaign::AgentGroup;
 use crate::model::ChannelSample;
 use crate::report::page::document::{Block, Figure, LegendEntry, Section};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, SIZE, Stroke};
+use crate::util::format::sentence;
 
 /// Room around the values that are no peaks, in units of their range.
 const ROOM: f64 = 0.2;
@@ -16,10 +18,10 @@ const VIEWS: [(&str, [usize; 2], [&str; 2]); 2] = [
     ("from the side", [0, 2], ["x, m", "z, m"]),
 ];
 
-/// The paths under every controller.
-pub(super) fn section(view: &EpisodeView<'_>) -> Section {
+/// The paths of a group under every controller.
+pub(super) fn section(view: &EpisodeView<'_>, group: &AgentGroup) -> Section {
     let mut cut = false;
-    let frames = [0, 1, 2].map(|coordinate| frame(view, coordinate));
+    let frames = [0, 1, 2].map(|coordinate| frame(view, group, coordinate));
     let mut panels = Vec::new();
     for (side, channels, labels) in VIEWS {
         let [Some(across), Some(up)] = channels.map(|channel| frames[channel]) else {
@@ -27,7 +29,8 @@ pub(super) fn section(view: &EpisodeView<'_>) -> Section {
         };
         cut |= across.cut || up.cut;
         for trace in &view.traces {
-            panels.push(panel(view, trace, (side, channels, labels), [across, up]));
+            let shown = (side, channels, labels);
+            panels.push(panel(view, group, trace, shown, [across, up]));
         }
     }
     let mut legend = vec![LegendEntry::dashes(Color::Truth, "reference")];
@@ -38,7 +41,7 @@ pub(super) fn section(view: &EpisodeView<'_>) -> Section {
     );
     let mut caption = format!(
         "Paths of all {}; a dot is where one begins.",
-        view.campaign.agent.plural()
+        group.agent.plural()
     );
     if cut {
         caption.push_str(" Paths that run away leave the frame.");
@@ -48,14 +51,18 @@ pub(super) fn section(view: &EpisodeView<'_>) -> Section {
         legend,
         caption,
     };
-    Section::new("Paths", vec![Block::Figure(figure)])
+    Section::new(
+        sentence(&group.titled("paths")),
+        vec![Block::Figure(figure)],
+    )
 }
 
 /// The frame of a coordinate: of all references and of all episodes until they diverged.
-fn frame(view: &EpisodeView<'_>, channel: usize) -> Option<Frame> {
+fn frame(view: &EpisodeView<'_>, group: &AgentGroup, channel: usize) -> Option<Frame> {
     let mut values = Vec::new();
+    let agents = EpisodeView::agents_of(group);
     for trace in &view.traces {
-        for agent in 0..view.campaign.team {
+        for agent in agents.clone() {
             let until_s = view.until_s(trace, agent);
             let picks: [fn(&ChannelSample) -> f64; 2] = [|shown| shown.r, |shown| shown.x];
             for pick in picks {
@@ -66,13 +73,17 @@ fn frame(view: &EpisodeView<'_>, channel: usize) -> Option<Frame> {
         }
     }
     let mut frame = Frame::of(values, ROOM)?;
-    let mut outcomes = view.traces.iter().flat_map(|trace| trace.outcomes);
+    let mut outcomes = view
+        .traces
+        .iter()
+        .flat_map(|trace| &trace.outcomes[agents.clone()]);
     frame.cut |= outcomes.any(|outcome| outcome.diverged);
     Some(frame)
 }
 
 fn panel(
     view: &EpisodeView<'_>,
+    group: &AgentGroup,
     trace: &ControllerTrace<'_>,
     (side, channels, labels): (&str, [usize; 2], [&str; 2]),
     frames: [Frame; 2],
@@ -98,7 +109,7 @@ fn panel(
             .collect()
     };
     let mut marks = Vec::new();
-    for agent in 0..view.campaign.team {
+    for agent in EpisodeView::agents_of(group) {
         let simulated = path(agent, |shown| shown.x, f64::INFINITY);
         let first = simulated.first().copied();
         marks.push(Mark::Line(simulated, trace.color(), Stroke::Solid));

@@ -37,13 +37,13 @@ pub(super) fn svg(view: &EpisodeView<'_>) -> String {
     let title = format!(
         "{}, episode {}: {} of agent {agent}",
         campaign.name,
-        view.episode.index,
-        campaign.channels()[channel]
+        view.replay.episode,
+        view.group(agent).channels()[channel]
     );
     let subtitle = format!(
         "seed {}; the channel with the largest error{}{}",
         campaign.seed,
-        match campaign.team {
+        match campaign.agents() {
             1 => "",
             _ => " of the agent that fared worst",
         },

@@ -4,12 +4,14 @@ use super::episode_data::{ControllerTrace, EpisodeView};
 use super::path::height;
 use crate::agent::robot::kinematics::{by_leg, leg_pose};
 use crate::agent::robot::{JOINTS, Robot};
+use crate::campaign::AgentGroup;
 use crate::model::ChannelSample;
 use crate::model::episode::Snapshot;
 use crate::reference::walk::{Ankle, Foot, Placement, Walk, zmp};
 use crate::reference::{AgentWalk, Reference};
 use crate::report::page::document::{Block, Figure, LegendEntry, Section};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::util::format::sentence;
 use nalgebra::{Vector3, Vector6};
 
 /// Poses of a stick figure.
@@ -24,12 +26,15 @@ const LEGS: [Color; 2] = [Color::Series(4), Color::Series(3)];
 const COM: Color = Color::Series(5);
 const ZMP: Color = Color::Limit;
 
-/// The walk of the robot that fared worst, and its stick figures.
-pub(super) fn section(view: &EpisodeView<'_>, robot: &Robot) -> Section {
-    let agent = view.worst_agent();
+/// The walk of the robot of a group that fared worst, and its stick figures.
+pub(super) fn section(view: &EpisodeView<'_>, group: &AgentGroup, robot: &Robot) -> Section {
+    let agents = EpisodeView::agents_of(group);
+    let mut order = view.worst_first().into_iter();
+    let agent = order.find(|agent| agents.contains(agent));
+    let agent = agent.unwrap_or(agents.start);
     let mut blocks = Vec::new();
-    let walk = match &view.campaign.reference {
-        Reference::Walk(walks) => walks.get(agent),
+    let walk = match &group.reference {
+        Reference::Walk(walks) => walks.get(agent - group.first_agent),
         Reference::Sinusoid(_) | Reference::Waypoints(_) => None,
     };
     if let Some(AgentWalk { walk, start_s }) = walk {
@@ -39,7 +44,7 @@ pub(super) fn section(view: &EpisodeView<'_>, robot: &Robot) -> Section {
         blocks.push(Block::Figure(plan(walk, robot)));
     }
     blocks.push(Block::Figure(sticks(view, robot, agent, walk)));
-    Section::new("Walk", blocks)
+    Section::new(sentence(&group.titled("walk")), blocks)
 }
 
 /// How far the pelvis has come ahead at the samples of a walk; its swaying from side to side is no way.

@@ -157,8 +157,8 @@ pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, P
 }
 
 fn of_view(scenarios: &Scenarios, view: &View, agent: &str) -> Figure {
-    let campaign = &scenarios.campaign;
-    let panels: Vec<Plot> = campaign
+    let group = &scenarios.group;
+    let panels: Vec<Plot> = group
         .channels()
         .iter()
         .enumerate()
@@ -173,7 +173,7 @@ fn of_view(scenarios: &Scenarios, view: &View, agent: &str) -> Figure {
                     range: Some((0.0, scenarios.end_s())),
                     ..Axis::new("time, s")
                 },
-                y: Axis::new((view.unit)(campaign.unit(channel))),
+                y: Axis::new((view.unit)(group.unit(channel))),
                 marks: marks.collect(),
                 ..Plot::default()
             }
@@ -204,12 +204,13 @@ fn of_view(scenarios: &Scenarios, view: &View, agent: &str) -> Figure {
 /// Figure 8: the planned paths of UAVs, from above and from the side.
 fn paths() -> Result<Figure, PaperError> {
     let campaign = Campaign::parse(WAYPOINTS, Path::new("campaigns/waypoints.toml"))?;
+    let group = campaign.first_group();
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
     let view = |title: &str, labels: [&str; 2], axes: [usize; 2]| {
         let of_agent = |agent: usize| {
             let points = (0..=PATH_POINTS).map(|k| {
                 let t_s = end_s * f64::from(k) / f64::from(PATH_POINTS);
-                let at = campaign.reference.at(agent, t_s);
+                let at = group.reference.at(agent, t_s);
                 axes.map(|axis| at.get(axis).map_or(f64::NAN, |point| point.value))
             });
             let points = points.map(|[a, b]| (a, b)).collect();
@@ -219,7 +220,7 @@ fn paths() -> Result<Figure, PaperError> {
             title: title.into(),
             x: Axis::new(labels[0]),
             y: Axis::new(labels[1]),
-            marks: (0..campaign.team).map(of_agent).collect(),
+            marks: (0..group.team).map(of_agent).collect(),
             equal: true,
             ..Plot::default()
         }
@@ -228,7 +229,7 @@ fn paths() -> Result<Figure, PaperError> {
         view("from above", ["x, m", "y, m"], [0, 1]),
         view("from the side", ["x, m", "z, m"], [0, 2]),
     ];
-    let legend: Vec<LegendEntry> = (0..campaign.team)
+    let legend: Vec<LegendEntry> = (0..group.team)
         .map(|agent| LegendEntry::line(Color::Series(agent), format!("UAV {agent}")))
         .collect();
     let title = "Figure 8: planned path".to_string();
@@ -245,7 +246,7 @@ fn paths() -> Result<Figure, PaperError> {
 
 /// Figure 10: the planned walk of a robot from above.
 fn walk(robots: &Scenarios) -> Option<Figure> {
-    let Reference::Walk(walks) = &robots.campaign.reference else {
+    let Reference::Walk(walks) = &robots.group.reference else {
         return None;
     };
     let walk = &walks.first()?.walk;

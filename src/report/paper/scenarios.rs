@@ -3,7 +3,9 @@
 use super::error::PaperError;
 use super::measures::Series;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::campaign::{Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter};
+use crate::campaign::{
+    AgentGroup, Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter,
+};
 use crate::controllers::GainSet;
 use crate::draw::draw;
 use crate::model::ChannelSample;
@@ -38,7 +40,7 @@ impl Scenario {
 /// The first agent of a campaign under the FTC, with and without its initial errors, and under the PID.
 #[derive(Debug)]
 pub struct Scenarios {
-    pub(super) campaign: Campaign,
+    pub(super) group: AgentGroup,
     pub(super) met: Met,
     ftc: Vec<Snapshot>,
     on_course: Vec<Snapshot>,
@@ -51,23 +53,24 @@ impl Scenarios {
     /// # Errors
     /// If it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
     /// and one smoothed square wave, the same on all channels.
-    pub fn simulate(campaign: Campaign) -> Result<Self, PaperError> {
+    pub fn simulate(campaign: &Campaign) -> Result<Self, PaperError> {
         let pair = [FTC, PID].map(Into::into).to_vec();
-        let campaign = campaign.with(|campaign| campaign.controllers = pair);
-        let path = &campaign.path;
-        let met = Met::of(&campaign).ok_or_else(|| PaperError::Unsuited { path: path.clone() })?;
-        let gains = GainSet::synthesize_or_load(&campaign)?;
-        let trace = |campaign: &Campaign, controller: usize| {
-            let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+        let group = campaign.first_group().clone();
+        let group = group.with(|group| group.controllers = pair);
+        let path = &group.path;
+        let met = Met::of(&group).ok_or_else(|| PaperError::Unsuited { path: path.clone() })?;
+        let gains = GainSet::synthesize_or_load(&group)?;
+        let trace = |group: &AgentGroup, controller: usize| {
+            let cpu = Cpu::new(group, &gains.loops(), Precision::F64, None);
             cpu.trace(0, controller, EVERY).1
         };
-        let on_course = without_initial_errors(&campaign);
+        let on_course = without_initial_errors(&group);
         let (ftc, (on_course, pid)) = rayon::join(
-            || trace(&campaign, 0),
-            || rayon::join(|| trace(&on_course, 0), || trace(&campaign, 1)),
+            || trace(&group, 0),
+            || rayon::join(|| trace(&on_course, 0), || trace(&group, 1)),
         );
         Ok(Self {
-            campaign,
+            group,
             met,
             ftc,
             on_course,
@@ -113,12 +116,12 @@ impl Scenarios {
     }
 
     fn time_s(&self, snapshot: &Snapshot) -> f64 {
-        f64::from(snapshot.step) * self.campaign.time.step_s
+        f64::from(snapshot.step) * self.group.time.step_s
     }
 
     /// How long an episode is, s.
     pub(super) fn end_s(&self) -> f64 {
-        f64::from(self.campaign.time.steps) * self.campaign.time.step_s
+        f64::from(self.group.time.steps) * self.group.time.step_s
     }
 
     /// When the sensor fault changes its sign after `from_s` and has half a period left, s.
@@ -126,7 +129,7 @@ impl Scenarios {
         let half_s = self.met.half_period_s();
         // The sign of tanh(sin(2 pi t/T + phase)/tau) changes where the sine has a zero.
         let first_s = (-self.met.phase_rad / TAU * self.met.period_s).rem_euclid(half_s);
-        let jumps = (0..self.campaign.time.steps).map(|k| first_s + f64::from(k) * half_s);
+        let jumps = (0..self.group.time.steps).map(|k| first_s + f64::from(k) * half_s);
         jumps
             .skip_while(|jump_s| *jump_s <= from_s)
             .take_while(|jump_s| jump_s + half_s <= self.end_s() + 1e-9)
@@ -151,10 +154,10 @@ fn is_finite(shown: &ChannelSample) -> bool {
     all.iter().all(|value| value.is_finite())
 }
 
-/// The same campaign from the reference itself.
-fn without_initial_errors(campaign: &Campaign) -> Campaign {
-    campaign.clone().with(|campaign| {
-        let initial = &mut campaign.initial;
+/// The same agents from the reference itself.
+fn without_initial_errors(group: &AgentGroup) -> AgentGroup {
+    group.clone().with(|group| {
+        let initial = &mut group.initial;
         for drawn in [
             &mut initial.error,
             &mut initial.error_rate,
@@ -185,9 +188,9 @@ pub(super) struct Met {
 }
 
 impl Met {
-    fn of(campaign: &Campaign) -> Option<Self> {
-        let agent = draw(campaign, 0).agents.into_iter().next()?;
-        let ([disturbance], [fault]) = (&*campaign.disturbances, &*campaign.faults) else {
+    fn of(group: &AgentGroup) -> Option<Self> {
+        let agent = draw(group, 0).agents.into_iter().next()?;
+        let ([disturbance], [fault]) = (&*group.disturbances, &*group.faults) else {
             return None;
         };
         let (sine, square) = (DisturbanceKind::Sine, FaultKind::SmoothedSquare);

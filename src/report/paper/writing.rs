@@ -68,7 +68,7 @@ fn is_ours(dir: &Path) -> bool {
 /// # Errors
 /// If a file cannot be written, or a campaign that is part of the program has become unfit.
 pub fn paper(out: &OutputDir) -> Result<Vec<Claim>, PaperError> {
-    let simulate = |text, path| Scenarios::simulate(Campaign::parse(text, Path::new(path))?);
+    let simulate = |text, path| Scenarios::simulate(&Campaign::parse(text, Path::new(path))?);
     let uavs = simulate(UAVS, "campaigns/scenario-a.toml")?;
     let robots = simulate(ROBOTS, "campaigns/paper-robots.toml")?;
     let claims = claims(&uavs, &robots);

@@ -1,5 +1,6 @@
 //! Which conditions matter, what was drawn, and the worst episodes.
 
+use crate::campaign::AgentGroup;
 use crate::draw::draw;
 use crate::draw::quantities::{conditions, title};
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
@@ -144,8 +145,11 @@ fn explained(data: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
 /// Quantile bands of the RMS error over a condition.
 fn bands(data: &RunData, condition: &str, group: &str) -> Option<Figure> {
     let met = sizes(data, condition);
-    let column = format!("rmse_{group}");
-    let errors = data.of_teams(&data.episodes, &column, |_| true);
+    let roles = data.campaign.channel_groups();
+    let of = roles.iter().find(|own| *own.name == *group)?;
+    let column = format!("rmse_{}", of.role.name());
+    let agents = &data.campaign.groups()[of.group];
+    let errors = data.of_teams(&data.episodes, agents, &column, |_| true);
     let mut order: Vec<usize> = (0..met.len()).filter(|&k| met[k].is_finite()).collect();
     order.sort_by(|&a, &b| met[a].total_cmp(&met[b]));
     if order.len() < 5 * BINS {
@@ -183,18 +187,13 @@ fn bands(data: &RunData, condition: &str, group: &str) -> Option<Figure> {
         marks.push(Mark::Line(line, Color::Series(index), Stroke::Solid));
     }
     let name = title(&data.campaign, condition);
-    let roles = data.campaign.channel_groups();
-    let unit = roles
-        .iter()
-        .find(|own| own.role.name() == group)
-        .map_or("", |own| own.role.unit());
     Some(Figure {
         panels: vec![Plot {
             title: group.to_string(),
             x: Axis::new(name.clone()),
             y: Axis {
                 logarithmic: true,
-                ..Axis::new(format!("RMS error, {unit}"))
+                ..Axis::new(format!("RMS error, {}", of.role.unit()))
             },
             marks,
             ..Plot::default()
@@ -213,7 +212,11 @@ fn sizes(data: &RunData, condition: &str) -> Vec<f64> {
     let campaign = &data.campaign;
     let all = conditions(campaign);
     let measured = all.iter().find(|own| own.key == condition);
-    let size = |episode| measured?.of(&draw(campaign, episode).applied(campaign));
+    let size = |episode| {
+        let groups = campaign.groups().iter();
+        let applied = groups.map(|group| draw(group, episode).applied(group));
+        measured?.of(&applied.collect::<Vec<_>>())
+    };
     let sizes: Vec<Option<f64>> = (0..data.manifest.episodes).map(size).collect();
     let drawn = by_chance(campaign, condition, &sizes);
     drawn
@@ -224,24 +227,6 @@ fn sizes(data: &RunData, condition: &str) -> Vec<f64> {
 
 /// The ranges that were really drawn.
 pub(crate) fn drawn(data: &RunData) -> Section {
-    let table = &data.episodes;
-    let first = data.campaign.controllers.first();
-    let rows: Vec<usize> = (0..table.rows())
-        .filter(|&row| first.is_some_and(|name| **name == *table.text(row, "controller")))
-        .collect();
-    // Columns of one quantity, which differ in the channel, belong together.
-    let mut quantities: Vec<(String, Vec<&String>)> = Vec::new();
-    let begin = table.names().iter().position(|name| name == "mass_scale");
-    for column in table.names().iter().skip(begin.unwrap_or(usize::MAX)) {
-        let mut channels = data.campaign.channels().iter();
-        let quantity = channels
-            .find_map(|channel| column.strip_suffix(&format!("_{channel}")))
-            .unwrap_or(column);
-        match quantities.last_mut().filter(|(own, _)| own == quantity) {
-            Some((_, columns)) => columns.push(column),
-            None => quantities.push((quantity.to_string(), vec![column])),
-        }
-    }
     let mut grid = Grid::new([
         "condition",
         "values",
@@ -251,40 +236,10 @@ pub(crate) fn drawn(data: &RunData) -> Section {
         "95th percentile",
         "highest",
     ]);
-    for (quantity, columns) in &quantities {
-        let cells = rows
-            .iter()
-            .flat_map(|&row| columns.iter().map(move |column| table.real(row, column)));
-        let mut values: Vec<f64> = cells.filter(|value| value.is_finite()).collect();
-        values.sort_by(f64::total_cmp);
-        if values.is_empty() {
-            continue;
+    for group in data.campaign.groups() {
+        for (quantity, columns) in columns_of(data, group) {
+            grid.rows.extend(range(data, group, &quantity, &columns));
         }
-        let name = title(&data.campaign, quantity);
-        if let Some(flag) = name.strip_suffix(" occurs") {
-            let share = values.iter().sum::<f64>() / values.len() as f64;
-            let mut row = vec![
-                Cell::text(format!("{flag}: share of agents that have it")),
-                Cell::number(values.len().to_string()),
-                Cell::number(format::rate(share, None)),
-            ];
-            row.resize(grid.head.len(), Cell::number(""));
-            grid.rows.push(row);
-            continue;
-        }
-        let at = |q: f64| {
-            let place = whole((q * (values.len() - 1) as f64).round());
-            Cell::number(format::number(values[place.min(values.len() - 1)]))
-        };
-        grid.rows.push(vec![
-            Cell::text(name),
-            Cell::number(values.len().to_string()),
-            at(0.0),
-            at(0.05),
-            at(0.5),
-            at(0.95),
-            at(1.0),
-        ]);
     }
     Section::new(
         "Conditions really drawn",
@@ -298,6 +253,75 @@ pub(crate) fn drawn(data: &RunData) -> Section {
             ),
         ],
     )
+}
+
+/// The quantities that are drawn for a group of agents, with their columns: those that differ in the channel belong
+/// together.
+fn columns_of<'a>(data: &'a RunData, group: &AgentGroup) -> Vec<(String, Vec<&'a String>)> {
+    let names = data.episodes.names();
+    let begin = names.iter().position(|name| name == "mass_scale");
+    let mut quantities: Vec<(String, Vec<&String>)> = Vec::new();
+    for column in names.iter().skip(begin.unwrap_or(usize::MAX)) {
+        let mut channels = group.channels().iter();
+        let quantity = channels
+            .find_map(|channel| column.strip_suffix(&format!("_{channel}")))
+            .unwrap_or(column);
+        match quantities.last_mut().filter(|(own, _)| own == quantity) {
+            Some((_, columns)) => columns.push(column),
+            None => quantities.push((quantity.to_string(), vec![column])),
+        }
+    }
+    quantities
+}
+
+/// The range of a quantity of a group of agents; none where the group has no such quantity.
+fn range(
+    data: &RunData,
+    group: &AgentGroup,
+    quantity: &str,
+    columns: &[&String],
+) -> Option<Vec<Cell>> {
+    let table = &data.episodes;
+    let wanted = [
+        ("controller", &*data.campaign.controllers[0]),
+        ("group", &group.name),
+    ];
+    let cells = table
+        .find(&wanted)
+        .flat_map(|row| columns.iter().map(move |column| table.real(row, column)));
+    let mut values: Vec<f64> = cells.filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    if values.is_empty() {
+        return None;
+    }
+    let name = match title(&data.campaign, quantity) {
+        // What is numbered through all groups has the name of its group already.
+        plain if plain == quantity => group.titled(quantity),
+        titled => titled,
+    };
+    if let Some(flag) = name.strip_suffix(" occurs") {
+        let share = values.iter().sum::<f64>() / values.len() as f64;
+        let mut row = vec![
+            Cell::text(format!("{flag}: share of agents that have it")),
+            Cell::number(values.len().to_string()),
+            Cell::number(format::rate(share, None)),
+        ];
+        row.resize(7, Cell::number(""));
+        return Some(row);
+    }
+    let at = |q: f64| {
+        let place = whole((q * (values.len() - 1) as f64).round());
+        Cell::number(format::number(values[place.min(values.len() - 1)]))
+    };
+    Some(vec![
+        Cell::text(name),
+        Cell::number(values.len().to_string()),
+        at(0.0),
+        at(0.05),
+        at(0.5),
+        at(0.95),
+        at(1.0),
+    ])
 }
 
 /// The worst episodes of each controller, and how to see them.

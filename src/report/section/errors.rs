@@ -145,30 +145,21 @@ fn failures_of(sheet: &TableReader, row: usize, pair: &str, difference: &str) ->
 /// The distributions of the RMS error.
 pub(crate) fn distributions(data: &RunData) -> Section {
     let roles = data.campaign.channel_groups();
-    let max_rmse = &data.campaign.verdict.max_rmse;
-    let limit = |channel: usize| max_rmse.get(channel).copied().unwrap_or(f64::INFINITY);
-    let groups = roles.iter().map(|group| {
-        let column = format!("rmse_{}", group.role.name());
-        let values = data.of_teams(&data.episodes, &column, |_| true);
-        ecdf(
-            group.role.name(),
-            group.role,
-            limit(group.channels.start),
-            &values,
-        )
+    let groups = roles.iter().map(|of| {
+        let group = &data.campaign.groups()[of.group];
+        let column = format!("rmse_{}", of.role.name());
+        let values = data.of_teams(&data.episodes, group, &column, |_| true);
+        let limit = group.verdict.max_rmse[of.channels.start];
+        ecdf(&of.name, of.role, limit, &values)
     });
-    let names = data.campaign.channels();
-    let channels = roles.iter().flat_map(|group| {
-        let own = names.get(group.channels.clone()).unwrap_or_default();
-        own.iter().enumerate().map(move |(place, name)| {
-            let sheet = &data.channels;
+    let channels = roles.iter().flat_map(|of| {
+        let group = &data.campaign.groups()[of.group];
+        of.channels.clone().map(move |channel| {
+            let (sheet, name) = (&data.channels, &group.channels()[channel]);
             let of_channel = |row: usize| sheet.text(row, "channel") == &**name;
-            ecdf(
-                name,
-                group.role,
-                limit(group.channels.start + place),
-                &data.of_teams(sheet, "rmse", of_channel),
-            )
+            let values = data.of_teams(sheet, group, "rmse", of_channel);
+            let limit = group.verdict.max_rmse[channel];
+            ecdf(&group.titled(name), of.role, limit, &values)
         })
     });
     let figure = |panels: Vec<Plot>, of: &str| Figure {
@@ -260,7 +251,7 @@ fn quantiles(data: &RunData) -> Grid {
         };
         let group = sheet.text(row, "group");
         let roles = data.campaign.channel_groups();
-        let role = roles.iter().find(|own| own.role.name() == group);
+        let role = roles.iter().find(|own| *own.name == *group);
         let Some(role) = role else { continue };
         let cell = |q: &str| {
             Cell::number(format::measured(

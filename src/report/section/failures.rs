@@ -22,12 +22,13 @@ pub(crate) fn section(data: &RunData) -> Section {
 }
 
 fn meaning(data: &RunData) -> String {
-    let verdict = &data.campaign.verdict;
-    let agents = match data.campaign.team {
-        1 => format!("its {}", data.campaign.agent.noun(1)),
-        _ => format!("any of its {}", data.campaign.agent.plural()),
+    let campaign = &data.campaign;
+    let agents = match campaign.agents() {
+        1 => format!("its {}", campaign.first_group().agent.noun(1)),
+        _ => format!("any of its {}", campaign.plural()),
     };
-    let limits = data.campaign.channel_groups().into_iter().map(|group| {
+    let limits = campaign.channel_groups().into_iter().map(|group| {
+        let verdict = &campaign.groups()[group.group].verdict;
         let of_group = |limits: &[f64]| {
             let own = limits.get(group.channels.clone()).unwrap_or_default();
             let (low, high) = (
@@ -44,7 +45,7 @@ fn meaning(data: &RunData) -> String {
         };
         format!(
             "{}, {}: |e| {}, RMS error {}",
-            group.role.name(),
+            group.name,
             group.role.unit(),
             of_group(&verdict.max_error),
             of_group(&verdict.max_rmse)
@@ -69,14 +70,19 @@ pub(crate) fn intervals(campaign: &Campaign) -> &'static str {
 
 /// The failure rate of a row of the summary.
 pub(crate) fn rate(data: &RunData, row: usize, color: Color) -> Spread {
+    spread(data, row, "", color)
+}
+
+/// The same of columns with a prefix.
+fn spread(data: &RunData, row: usize, prefix: &str, color: Color) -> Spread {
     let table = &data.summary;
     let method = RateMethod::of(&data.campaign).name();
-    let end = |side: &str| table.real(row, &format!("failure_rate_{method}_{side}"));
+    let end = |side: &str| table.real(row, &format!("{prefix}failure_rate_{method}_{side}"));
     let ends = [end("lower"), end("upper")];
     let interval = ends.iter().all(|end| end.is_finite()).then_some(ends);
     Spread {
         scale: Scale::Share,
-        value: table.real(row, "failure_rate"),
+        value: table.real(row, &format!("{prefix}failure_rate")),
         interval,
         color,
     }
@@ -92,25 +98,42 @@ fn rates(data: &RunData) -> Grid {
         "diverged",
         "95 % sure below",
     ]);
-    for (index, name) in data.campaign.controllers.iter().enumerate() {
-        let wanted = [("controller", &**name), ("stratum", ALL)];
-        let Some(row) = table.find(&wanted).next() else {
-            continue;
-        };
-        let count = |column: &str| Cell::number(format!("{:.0}", table.real(row, column)));
-        let bound = table.real(row, "failure_rate_upper_95");
-        grid.rows.push(vec![
-            Cell::text(&**name),
-            Cell::Spreads(vec![rate(data, row, Color::Series(index))]),
+    let counted = |row: usize, prefix: &str, name: &str, index: usize| {
+        let of = |column: &str| table.real(row, &format!("{prefix}{column}"));
+        let count = |column: &str| Cell::number(format!("{:.0}", of(column)));
+        vec![
+            Cell::text(name),
+            Cell::Spreads(vec![spread(data, row, prefix, Color::Series(index))]),
             Cell::number(format!(
                 "{:.0} of {:.0}",
-                table.real(row, "failed"),
+                of("failed"),
                 table.real(row, "n")
             )),
             count("exceeded"),
             count("diverged"),
-            Cell::number(format::at_most(bound)),
-        ]);
+            Cell::number(format::at_most(of("failure_rate_upper_95"))),
+        ]
+    };
+    let channels = data.campaign.channel_groups();
+    for (index, name) in data.campaign.controllers.iter().enumerate() {
+        let wanted = [("controller", &**name), ("stratum", ALL)];
+        let rows: Vec<usize> = table.find(&wanted).collect();
+        let Some(&first) = rows.first() else {
+            continue;
+        };
+        grid.rows.push(counted(first, "", name, index));
+        if !data.campaign.has_named_groups() {
+            continue;
+        }
+        for (place, group) in data.campaign.groups().iter().enumerate() {
+            let own = channels.iter().find(|channels| channels.group == place);
+            let of_group =
+                |row: &&usize| own.is_some_and(|own| table.text(**row, "group") == &*own.name);
+            if let Some(&row) = rows.iter().find(of_group) {
+                let name = format!("{name}, {} alone", group.name);
+                grid.rows.push(counted(row, "group_", &name, index));
+            }
+        }
     }
     grid
 }

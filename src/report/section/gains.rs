@@ -21,16 +21,15 @@ pub(crate) fn section(data: &RunData) -> Section {
         "slowest and fastest pole, 1/s",
     ]);
     let mut folded = Vec::new();
-    for controller in &data.gains.controllers {
-        for (group, own) in groups.iter().zip(&controller.groups) {
-            margins
-                .rows
-                .push(row(&controller.name, group.role.name(), own));
+    for (index, name) in data.campaign.controllers.iter().enumerate() {
+        let of_groups = data.gains.iter().map(|gains| &gains.controllers[index]);
+        let channels =
+            of_groups.flat_map(|own| own.groups.iter().map(move |channel| (own, channel)));
+        for (group, (controller, own)) in groups.iter().zip(channels) {
+            margins.rows.push(row(name, &group.name, own));
             folded.push(Block::Text(format!(
-                "{}, {} ({})",
-                controller.name,
-                group.role.name(),
-                controller.source
+                "{name}, {} ({})",
+                group.name, controller.source
             )));
             folded.push(Block::Code(numbers(own)));
         }

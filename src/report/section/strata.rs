@@ -64,7 +64,7 @@ fn growth(data: &RunData) -> Grid {
     let table = &data.screening;
     let roles = data.campaign.channel_groups();
     let mut grid = Grid::new(["controller", "stratum", "against"]);
-    let groups = roles.iter().map(|group| group.role.name());
+    let groups = roles.iter().map(|group| &group.name);
     grid.head
         .extend(groups.map(|name| format!("median RMS error grows by a factor of [95 %], {name}")));
     for row in 0..table.rows() {
@@ -74,11 +74,8 @@ fn growth(data: &RunData) -> Grid {
             Cell::text(table.text(row, "reference")),
         ];
         for group in &roles {
-            let factor = |side: &str| {
-                table
-                    .real(row, &format!("log_growth_{}{side}", group.role.name()))
-                    .exp()
-            };
+            let name = group.name.replace(' ', "_");
+            let factor = |side: &str| table.real(row, &format!("log_growth_{name}{side}")).exp();
             cells.push(Cell::number(format::measured(
                 factor(""),
                 factor("_lower"),

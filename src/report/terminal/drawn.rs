@@ -1,7 +1,7 @@
 //! The ranges of all that a campaign draws.
 
 use super::text::line;
-use crate::campaign::Campaign;
+use crate::campaign::{AgentGroup, Campaign};
 use crate::draw::quantities::{Source, quantities};
 use crate::draw::{AgentDraw, draw};
 use serde_json::{Value, json};
@@ -91,14 +91,27 @@ fn range(values: &[f64]) -> Option<[f64; 2]> {
     (!values.is_empty()).then_some([low, high])
 }
 
-/// The agents, the disturbances and the faults, in the campaign's order, with what the first episodes draw for them.
+/// The agents, the disturbances and the faults of each group, in the campaign's order, with what the first episodes
+/// draw for them.
 fn subjects(campaign: &Campaign) -> Vec<Subject> {
-    let episodes = 0..DRAWS.min(campaign.episodes);
-    let applied = |episode| draw(campaign, episode).applied(campaign).agents;
+    let groups = campaign.groups().iter().enumerate();
+    let of_group = |(index, group): (usize, &AgentGroup)| {
+        let prefix = match campaign.has_named_groups() {
+            true => format!("group[{index}]."),
+            false => String::new(),
+        };
+        subjects_of(group, &prefix)
+    };
+    groups.flat_map(of_group).collect()
+}
+
+fn subjects_of(group: &AgentGroup, prefix: &str) -> Vec<Subject> {
+    let episodes = 0..DRAWS.min(group.episodes);
+    let applied = |episode| draw(group, episode).applied(group).agents;
     let draws: Vec<AgentDraw> = episodes.flat_map(applied).collect();
     let mut all: Vec<Subject> = Vec::new();
-    for quantity in quantities(campaign) {
-        let [key, title] = names(campaign, quantity.source);
+    for quantity in quantities(group) {
+        let [key, title] = names(group, prefix, quantity.source);
         if all.last().is_none_or(|last| last.title != title) {
             let occurs = match quantity.source {
                 Source::Fault(index) => {
@@ -129,15 +142,18 @@ fn subjects(campaign: &Campaign) -> Vec<Subject> {
 }
 
 /// What precedes the names of a source's quantities, and what it is called.
-fn names(campaign: &Campaign, source: Source) -> [String; 2] {
+fn names(group: &AgentGroup, prefix: &str, source: Source) -> [String; 2] {
     match source {
-        Source::Agent | Source::Control | Source::Initial => [String::new(), String::new()],
+        Source::Agent | Source::Control | Source::Initial => match &*group.name {
+            "" => [String::new(), String::new()],
+            name => [format!("{name} "), name.to_string()],
+        },
         Source::Disturbance(k, kind) => [
-            format!("disturbance[{k}] "),
-            format!("disturbance[{k}] {}", kind.name()),
+            format!("{prefix}disturbance[{k}] "),
+            format!("{prefix}disturbance[{k}] {}", kind.name()),
         ],
         Source::Fault(k) => {
-            let title = format!("fault[{k}] {}", campaign.faults[k].name);
+            let title = format!("{prefix}fault[{k}] {}", group.faults[k].name);
             [format!("{title} "), title]
         }
     }

@@ -1,7 +1,7 @@
 //! How long a campaign would take, roughly.
 
 use crate::agent::Agent;
-use crate::campaign::Campaign;
+use crate::campaign::{AgentGroup, Campaign};
 
 /// Nanoseconds that a step of an agent takes a core with 16 lanes in single precision.
 struct Cost {
@@ -26,18 +26,25 @@ const BIPED: Cost = Cost {
 
 /// Steps of single agents in a campaign.
 pub(super) fn steps(campaign: &Campaign) -> f64 {
-    let simulated = campaign.team * campaign.controllers.len();
-    f64::from(campaign.time.steps) * f64::from(campaign.episodes) * simulated as f64
+    campaign.groups().iter().map(steps_of).sum()
+}
+
+fn steps_of(group: &AgentGroup) -> f64 {
+    let simulated = group.team * group.controllers.len();
+    f64::from(group.time.steps) * f64::from(group.episodes) * simulated as f64
 }
 
 /// How long they take on one core with 16 lanes, s.
 pub(super) fn seconds(campaign: &Campaign) -> f64 {
-    let cost = match campaign.agent {
-        Agent::Uav(_) => UAV,
-        Agent::Biped(_) => BIPED,
+    let of_group = |group: &AgentGroup| {
+        let cost = match group.agent {
+            Agent::Uav(_) => UAV,
+            Agent::Biped(_) => BIPED,
+        };
+        let signals = group.disturbances.len() + group.faults.len();
+        1e-9 * steps_of(group) * (cost.bare + cost.signal * signals as f64)
     };
-    let signals = campaign.disturbances.len() + campaign.faults.len();
-    1e-9 * steps(campaign) * (cost.bare + cost.signal * signals as f64)
+    campaign.groups().iter().map(of_group).sum()
 }
 
 /// A length of time in the unit that people would use.

@@ -6,7 +6,6 @@ use super::pairs::pairs;
 use super::screening::strata;
 use super::style::heading;
 use super::text::{kind_of_interval, line};
-use crate::agent::ChannelRole;
 use crate::campaign::{ALL, Campaign};
 use crate::draw::quantities::title;
 use crate::report::notes::caveats;
@@ -54,11 +53,10 @@ fn simulated(campaign: &Campaign, manifest: &Manifest) -> String {
     line(
         &mut text,
         &format!(
-            "{}: {} x {} {}, seed {}, {precision} on {}, {:.1} s of simulation",
+            "{}: {} x {}, seed {}, {precision} on {}, {:.1} s of simulation",
             heading(&campaign.name),
             counted(manifest.episodes),
-            campaign.team,
-            campaign.agent.noun(campaign.team),
+            campaign.agents_in_words(),
             campaign.seed,
             engines.join(", then on "),
             manifest.times.loop_s
@@ -79,12 +77,12 @@ fn failure_rates(campaign: &Campaign, findings: &Findings) -> String {
     let mut text = String::new();
     line(
         &mut text,
-        &match campaign.team {
+        &match campaign.agents() {
             1 => format!("\n{}", heading("failures")),
             _ => format!(
                 "\n{} (an episode fails with any of its {})",
                 heading("failures"),
-                campaign.agent.plural()
+                campaign.plural()
             ),
         },
     );
@@ -99,12 +97,16 @@ fn failure_rates(campaign: &Campaign, findings: &Findings) -> String {
             "95 % sure below"
         ),
     );
-    for failures in rates(findings) {
+    let of_all = |rate: &&FailureRate| *rate.stratum == *ALL;
+    for failures in findings.results.failures.iter().filter(of_all) {
+        let name = match &failures.agents {
+            None => failures.controller.clone(),
+            Some(group) => format!("  {group}"),
+        };
         line(
             &mut text,
             &format!(
-                "  {:<12} {:>14}  {:>7.2}%  {:<19} {}{}",
-                failures.controller,
+                "  {name:<12} {:>14}  {:>7.2}%  {:<19} {}{}",
                 format!("{} of {}", failures.failed(), failures.n),
                 100.0 * failures.rate(),
                 failures
@@ -139,14 +141,10 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
             heading("RMS error from settle_s on")
         ),
     );
-    let roles: Vec<ChannelRole> = campaign
-        .channel_groups()
-        .iter()
-        .map(|group| group.role)
-        .collect();
+    let roles = campaign.channel_groups();
     let mut head = format!("  {:<12}", "controller");
     for role in &roles {
-        let title = format!("{}, {}", role.name(), role.unit());
+        let title = format!("{}, {}", role.name, role.role.unit());
         head.push_str(&format!(" {title:>34} "));
     }
     line(&mut text, head.trim_end());
@@ -156,12 +154,12 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
                 row.failures.controller == *name
                     && *row.failures.stratum == *ALL
                     && row.metric == "rmse"
-                    && row.group == group
+                    && *row.group == *group
             });
             row.map_or(String::new(), |row| {
                 let number = |value: f64| digits(value, 3);
-                let value = |k: usize| row.quantiles[k].1.map_or("-".to_string(), number);
-                let interval = row.quantiles[0].2.map_or(String::new(), |i| {
+                let value = |k: usize| row.quantiles[k].value.map_or("-".to_string(), number);
+                let interval = row.quantiles[0].interval.map_or(String::new(), |i| {
                     format!(" [{}, {}]", number(i.lower), number(i.upper))
                 });
                 format!("{}{interval}, {}", value(0), value(1))
@@ -169,7 +167,7 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
         };
         let mut cells = format!("  {name:<12}");
         for role in &roles {
-            cells.push_str(&format!(" {:>34} ", cell(role.name())));
+            cells.push_str(&format!(" {:>34} ", cell(&role.name)));
         }
         line(&mut text, cells.trim_end());
     }
@@ -245,13 +243,13 @@ fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
     );
     for same in sure.chunk_by(|a, b| a.target == b.target) {
         let target = &same[0].target;
-        let about = target.group.map_or("failures".to_string(), str::to_string);
+        let about = target.group.as_deref().unwrap_or("failures");
         let strongest = same.iter().take(STRONGEST).map(|ranked| {
-            let interval = ranked.interval.map_or(String::new(), |interval| {
+            let interval = ranked.trend.interval.map_or(String::new(), |interval| {
                 format!(" [{:+.2}, {:+.2}]", interval.lower, interval.upper)
             });
             let condition = title(campaign, &ranked.condition);
-            format!("{condition} {:+.2}{interval}", ranked.effect.trend.value)
+            format!("{condition} {:+.2}{interval}", ranked.trend.value)
         });
         let strongest: Vec<String> = strongest.collect();
         line(
@@ -301,17 +299,4 @@ fn worst(findings: &Findings, out: &Path) -> String {
         );
     }
     text
-}
-
-/// The failure rates of all episodes.
-fn rates(findings: &Findings) -> Vec<&FailureRate> {
-    let mut rates: Vec<&FailureRate> = findings
-        .results
-        .summary
-        .iter()
-        .map(|row| &row.failures)
-        .filter(|failures| *failures.stratum == *ALL)
-        .collect();
-    rates.dedup();
-    rates
 }

@@ -2,32 +2,34 @@
 
 use super::style::{heading, judged};
 use super::text::line;
-use crate::campaign::{Campaign, FTC, PID, PID_TUNED};
+use crate::campaign::{AgentGroup, Campaign, FTC, PID, PID_TUNED};
 use crate::controllers::{self, GainSet, built_in};
 use crate::synthesis::{ChannelSynthesis, ControllerGains};
 
-/// The gains of a campaign and what is known about them.
-pub fn gains(campaign: &Campaign, gains: &GainSet) -> String {
+/// The gains of a campaign, a set of each group of agents, and what is known about them.
+pub fn gains(campaign: &Campaign, gains: &[GainSet]) -> String {
+    let groups = campaign.groups().iter().zip(gains);
+    let texts: Vec<String> = groups
+        .map(|(group, gains)| of_group(group, gains))
+        .collect();
+    texts.join("\n")
+}
+
+fn of_group(group: &AgentGroup, gains: &GainSet) -> String {
     let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "{}: preset {}",
-            campaign.path.display(),
-            campaign.synthesis.preset
-        ),
-    );
-    let names = campaign.channel_groups();
+    let path = group.path.display().to_string();
+    let preset = format!("preset {}", group.synthesis.preset);
+    line(&mut text, &format!("{path}: {}", group.titled(&preset)));
+    let names = group.channel_groups();
+    let designs = &group.synthesis.designs;
     for controller in &gains.controllers {
         let title = heading(&controller.name);
         line(&mut text, &format!("\n{title} ({})", controller.source));
-        // Groups with the same gains are said once.
+        // Channel groups with the same gains are said once.
         let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
         for (index, (name, own)) in names.iter().zip(&controller.groups).enumerate() {
-            let design = &campaign.synthesis.designs[index];
             let same = said.iter_mut().find(|(_, other)| {
-                campaign.synthesis.designs[*other] == *design
-                    && controller.groups[*other].gains == own.gains
+                designs[*other] == designs[index] && controller.groups[*other].gains == own.gains
             });
             match same {
                 Some((names, _)) => names.push(name.role.name()),

@@ -6,7 +6,6 @@ mod devices;
 mod drawn;
 mod effort;
 mod findings;
-mod findings_json;
 mod gains;
 mod pairs;
 mod plan;
@@ -19,7 +18,6 @@ mod written;
 
 pub use devices::devices;
 pub use findings::findings;
-pub use findings_json::findings_json;
 pub use gains::{gains, synthesis};
 pub use plan::{plan, plan_json};
 pub use replay::{replay, replay_json};

@@ -27,7 +27,9 @@ pub(super) fn pairs(campaign: &Campaign, findings: &Findings) -> String {
             ),
         );
     }
-    let names = campaign.channels().iter().map(|name| name.len());
+    let first = findings.results.comparisons.first();
+    let ratios = first.iter().flat_map(|first| &first.ratios);
+    let names = ratios.map(|ratio| ratio.name.len());
     let width = names.max().unwrap_or(0).max(8);
     let of_all = findings
         .results

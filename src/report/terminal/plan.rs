@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 const WIDTH: usize = 100;
 
 /// What a campaign would do.
-pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
+pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
     let mut text = String::new();
     line(
         &mut text,
@@ -21,10 +21,9 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
     line(
         &mut text,
         &format!(
-            "  {} episodes of {} {} over {} s in steps of {} s, seed {}",
+            "  {} episodes of {} over {} s in steps of {} s, seed {}",
             campaign.episodes,
-            campaign.team,
-            campaign.agent.noun(campaign.team),
+            campaign.agents_in_words(),
             campaign.time.shown_s(campaign.time.steps),
             campaign.time.step_s,
             campaign.seed
@@ -36,7 +35,7 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             "  controllers {}: {:.2e} steps of {}, roughly {} on one core with 16 SIMD lanes",
             campaign.controllers.join(", "),
             steps(campaign),
-            campaign.agent.plural(),
+            campaign.plural(),
             lasting(seconds(campaign))
         ),
     );
@@ -45,8 +44,11 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             line(&mut text, &part);
         }
     }
-    for controller in &gains.controllers {
-        for (group, channel) in campaign.channel_groups().iter().zip(&controller.groups) {
+    for (index, name) in campaign.controllers.iter().enumerate() {
+        let of_groups = gains.iter().map(|gains| &gains.controllers[index]);
+        let channels =
+            of_groups.flat_map(|own| own.groups.iter().map(move |channel| (own, channel)));
+        for (group, (controller, channel)) in campaign.channel_groups().iter().zip(channels) {
             let level = channel
                 .findings
                 .as_ref()
@@ -57,10 +59,8 @@ pub fn plan(campaign: &Campaign, gains: &GainSet) -> String {
             line(
                 &mut text,
                 &format!(
-                    "  gains of {} on {}: {}{level}",
-                    controller.name,
-                    group.role.name(),
-                    controller.source
+                    "  gains of {name} on {}: {}{level}",
+                    group.name, controller.source
                 ),
             );
         }
@@ -105,10 +105,14 @@ fn design(campaign: &Campaign) -> Vec<String> {
 /// one size.
 fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
     let turn = campaign.strata.turn();
+    let of_campaign: Vec<&Fault> = campaign.faults().map(|(_, fault)| fault).collect();
     let alone = |stratum: &Stratum| match &stratum.faults {
         StratumFaults::Certain(faults) => match faults.as_slice() {
-            &[fault] => campaign.faults.get(fault).map(|own| &own.name) == Some(&stratum.name),
-            _ => false,
+            [] => false,
+            // Faults of several groups that have one name.
+            faults => faults
+                .iter()
+                .all(|&fault| of_campaign[fault].name == stratum.name),
         },
         StratumFaults::ByProbability => false,
     };
@@ -124,7 +128,7 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             if let count @ 2.. = names.len() {
                 sentences.push(format!(
                     "{count} strata of {share} of every {turn} episodes, in each one fault in {}: {}",
-                    whom(&campaign.faults.iter().collect::<Vec<_>>()),
+                    whom(&of_campaign),
                     names.join(", ")
                 ));
                 continue;
@@ -134,9 +138,9 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             StratumFaults::ByProbability => "all faults, each with its own probability".to_string(),
             StratumFaults::Certain(faults) if faults.is_empty() => "no fault".to_string(),
             StratumFaults::Certain(faults) => {
-                let faults = faults.iter().filter_map(|&k| campaign.faults.get(k));
-                let faults: Vec<&Fault> = faults.collect();
-                let names: Vec<&str> = faults.iter().map(|fault| &*fault.name).collect();
+                let faults: Vec<&Fault> = faults.iter().map(|&k| of_campaign[k]).collect();
+                let mut names: Vec<&str> = faults.iter().map(|fault| &*fault.name).collect();
+                names.dedup();
                 format!("{} in {}", names.join(" + "), whom(&faults))
             }
         };
@@ -145,7 +149,7 @@ fn strata(campaign: &Campaign, sentences: &mut Vec<String>) {
             stratum.name
         ));
     }
-    let background = campaign.faults.iter().filter(|fault| fault.background);
+    let background = of_campaign.iter().filter(|fault| fault.background);
     let background: Vec<&str> = background.map(|fault| &*fault.name).collect();
     if !background.is_empty() && !all.is_empty() {
         sentences.push(format!(
@@ -188,7 +192,10 @@ fn wrapped(sentence: &str) -> Vec<String> {
 /// [`plan`] for programs.
 pub fn plan_json(campaign: &Campaign) -> Value {
     json!({
-        "name": campaign.name, "episodes": campaign.episodes, "team": campaign.team, "seed": campaign.seed,
+        "name": campaign.name, "episodes": campaign.episodes, "team": campaign.agents(), "seed": campaign.seed,
+        "groups": campaign.groups().iter().map(|group| json!({
+            "name": *group.name, "agent": group.agent.noun(1), "team": group.team,
+        })).collect::<Vec<_>>(),
         "strata": campaign.strata.all().iter().map(|stratum| json!({
             "name": *stratum.name, "share": stratum.share,
         })).collect::<Vec<_>>(),

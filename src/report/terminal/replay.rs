@@ -1,9 +1,9 @@
 //! How a replayed episode went, for people and for programs.
 
 use super::attenuation;
-use super::findings_json::finite;
 use super::style::{bad, heading};
 use super::text::line;
+use crate::campaign::AgentGroup;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
 use crate::results::scores::{Status, status};
@@ -23,14 +23,15 @@ pub fn replay(
 ) -> String {
     let campaign = &replay.campaign;
     let mut text = String::new();
-    let names: Vec<String> = campaign
-        .channels()
-        .iter()
-        .enumerate()
-        .map(|(channel, name)| format!("{name}, {}", campaign.unit(channel)))
-        .collect();
+    let names = |group: &AgentGroup| -> Vec<String> {
+        let names = group.channels().iter().enumerate();
+        names
+            .map(|(channel, name)| format!("{name}, {}", group.unit(channel)))
+            .collect()
+    };
+    let widths = campaign.groups().iter().flat_map(names);
     // At least as wide as its heading.
-    let width = names.iter().map(String::len).max().unwrap_or(0).max(10);
+    let width = widths.map(|name| name.len()).max().unwrap_or(0).max(10);
     let settle_s = f64::from(campaign.time.settle_step) * campaign.time.step_s;
     let title = heading(&format!("episode {episode} under {controller}"));
     line(&mut text, &format!("{title}: errors from {settle_s} s on"));
@@ -45,9 +46,14 @@ pub fn replay(
         ),
     );
     for (agent, outcome) in replay.outcomes.iter().enumerate() {
-        let ending = ending(replay, outcome);
-        line(&mut text, &format!("  agent {agent}{ending}"));
-        for (channel, (name, metrics)) in names.iter().zip(&outcome.channels).enumerate() {
+        let ending = ending(replay, agent, outcome);
+        let (group, _) = campaign.member(agent);
+        let of_group = match &*group.name {
+            "" => String::new(),
+            name => format!(" ({name})"),
+        };
+        line(&mut text, &format!("  agent {agent}{of_group}{ending}"));
+        for (channel, (name, metrics)) in names(group).iter().zip(&outcome.channels).enumerate() {
             line(
                 &mut text,
                 &format!(
@@ -82,8 +88,8 @@ pub fn replay(
 }
 
 /// How an agent ended, if it failed, and when.
-fn ending(replay: &Replay, outcome: &AgentOutcome) -> String {
-    match status(&replay.campaign, outcome) {
+fn ending(replay: &Replay, agent: usize, outcome: &AgentOutcome) -> String {
+    match status(replay.campaign.member(agent).0, outcome) {
         Status::Ok => String::new(),
         failed => {
             let limit = match (failed, outcome.failed_step) {
@@ -124,24 +130,25 @@ pub fn replay_json(
     let campaign = &replay.campaign;
     let agents = replay.outcomes.iter().zip(&replay.attenuations);
     let of_agent = |(agent, (outcome, found)): (usize, (&AgentOutcome, &Vec<Found>))| {
-        let channels = campaign.channels().iter().zip(&outcome.channels);
+        let (group, _) = campaign.member(agent);
+        let channels = group.channels().iter().zip(&outcome.channels);
         let of_channel = |((name, metrics), attenuation): (
             (&Arc<str>, &ChannelOutcome),
             &Found,
         )| {
             json!({
                 "channel": **name,
-                "rmse": finite(metrics.rmse),
-                "max_abs": finite(metrics.max_abs),
+                "rmse": metrics.rmse,
+                "max_abs": metrics.max_abs,
                 "attenuation": attenuation.as_ref().ok().map(|found| json!({
-                    "level": finite(found.level()), "certified": finite(found.certified), "holds": found.holds(),
+                    "level": found.level(), "certified": found.certified, "holds": found.holds(),
                 })),
                 "attenuation_not_applicable": attenuation.as_ref().err().map(ToString::to_string),
             })
         };
         json!({
             "agent": agent,
-            "status": status(campaign, outcome).word(),
+            "status": status(group, outcome).word(),
             "failed_at_s": failed_at_s(replay, outcome),
             "channels": channels.zip(found).map(of_channel).collect::<Vec<_>>(),
         })

@@ -26,8 +26,9 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
             .controllers
             .iter()
             .filter_map(|name| {
-                let rates = findings.results.summary.iter().map(|row| &row.failures);
-                let mut own = rates.filter(|rate| rate.stratum == stratum.name);
+                let rates = findings.results.failures.iter();
+                let of_all = rates.filter(|rate| rate.agents.is_none());
+                let mut own = of_all.filter(|rate| rate.stratum == stratum.name);
                 own.find(|rate| rate.controller == *name)
             })
             .collect();

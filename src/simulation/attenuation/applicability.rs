@@ -3,7 +3,7 @@
 
 use crate::agent::robot::LEG_JOINTS;
 use crate::agent::{ActuationKind, Agent};
-use crate::campaign::{Campaign, DisturbanceKind, Fault, FaultTarget, IntegralKind, Link, Time};
+use crate::campaign::{AgentGroup, DisturbanceKind, Fault, FaultTarget, IntegralKind, Link, Time};
 use crate::draw::{AgentDraw, FaultDraw};
 use thiserror::Error;
 
@@ -70,11 +70,11 @@ pub enum NotApplicable {
 ///
 /// Other agents are none: they act through their positions, which are smooth whatever strikes them.
 #[must_use]
-pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option<NotApplicable> {
-    if campaign.agent.actuation() == ActuationKind::Thrust {
+pub fn obstacle(group: &AgentGroup, draw: &AgentDraw, channel: usize) -> Option<NotApplicable> {
+    if group.agent.actuation() == ActuationKind::Thrust {
         return Some(NotApplicable::CommandFilter);
     }
-    let control = &campaign.control;
+    let control = &group.control;
     if control.delay_s.is_some()
         || control.hold_steps > 1
         || control.integral == IntegralKind::Sensor
@@ -82,10 +82,10 @@ pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option
         return Some(NotApplicable::LoopOptions);
     }
     let rough = |kind: DisturbanceKind| {
-        let reaches = |struck| kind.acts_on(struck) && command_meets(campaign, struck, channel);
-        !kind.is_smooth() && (0..campaign.channels().len()).any(reaches)
+        let reaches = |struck| kind.acts_on(struck) && command_meets(group, struck, channel);
+        !kind.is_smooth() && (0..group.channels().len()).any(reaches)
     };
-    for (entry, disturbance) in campaign.disturbances.iter().enumerate() {
+    for (entry, disturbance) in group.disturbances.iter().enumerate() {
         if rough(disturbance.kind) {
             let kind = disturbance.kind.name();
             return Some(NotApplicable::RoughDisturbance { entry, kind });
@@ -93,10 +93,10 @@ pub fn obstacle(campaign: &Campaign, draw: &AgentDraw, channel: usize) -> Option
     }
     let rough = |&(_, (fault, own)): &(usize, (&Fault, &FaultDraw))| {
         (0..own.strikes.len())
-            .any(|struck| own.strikes[struck] && meets(campaign, fault, struck, channel))
-            && !is_smooth(fault, own, campaign.time)
+            .any(|struck| own.strikes[struck] && meets(group, fault, struck, channel))
+            && !is_smooth(fault, own, group.time)
     };
-    let mut faults = campaign.faults.iter().zip(&draw.faults).enumerate();
+    let mut faults = group.faults.iter().zip(&draw.faults).enumerate();
     faults
         .find(rough)
         .map(|(entry, (fault, _))| NotApplicable::RoughFault {
@@ -141,17 +141,17 @@ pub fn is_smooth(fault: &Fault, draw: &FaultDraw, time: Time) -> bool {
 /// Whether a jump of a fault on channel `struck` is a jump of f1 or f2 of channel `channel`. The torques of a leg act
 /// on all its joints at once; a UAV's channels, and whatever passes through a sensor, act on others through integrals
 /// only.
-fn meets(campaign: &Campaign, fault: &Fault, struck: usize, channel: usize) -> bool {
+fn meets(group: &AgentGroup, fault: &Fault, struck: usize, channel: usize) -> bool {
     match (fault.target, fault.link) {
         (FaultTarget::Plant, _) => true,
         (_, Link::Measurement) => struck == channel,
-        (_, Link::Command) => command_meets(campaign, struck, channel),
+        (_, Link::Command) => command_meets(group, struck, channel),
     }
 }
 
 /// The same for whatever acts like a command.
-fn command_meets(campaign: &Campaign, struck: usize, channel: usize) -> bool {
-    match &campaign.agent {
+fn command_meets(group: &AgentGroup, struck: usize, channel: usize) -> bool {
+    match &group.agent {
         Agent::Uav(_) => struck == channel,
         Agent::Biped(_) => struck / LEG_JOINTS == channel / LEG_JOINTS,
     }

@@ -11,7 +11,7 @@ pub use channel::{Attenuation, AttenuationInequality, Sample, Stretch};
 
 use crate::agent::ChannelGroup;
 use crate::backend::cpu::{Cpu, Precision};
-use crate::campaign::Campaign;
+use crate::campaign::AgentGroup;
 use crate::controllers::{ChannelController, GainSet, SimulatedController};
 use crate::draw::{Episode, draw};
 use crate::model::episode::Snapshot;
@@ -51,19 +51,19 @@ pub struct Start {
 impl Start {
     /// The start under a controller; none where the campaign's step resolves it.
     #[must_use]
-    pub fn of(campaign: &Campaign, controller: &SimulatedController) -> Option<Self> {
+    pub fn of(group: &AgentGroup, controller: &SimulatedController) -> Option<Self> {
         let poles = controller
             .groups
             .iter()
             .flat_map(|own| poles(&own.loop_gains));
         let fastest = poles.map(|pole| pole.norm()).fold(0.0, f64::max);
-        let finer = (fastest * campaign.time.step_s / RESOLVED).ceil();
+        let finer = (fastest * group.time.step_s / RESOLVED).ceil();
         let last_tap = |design: &ChannelDesign| {
             let [taps1, taps2] = design.smoothing.taps();
             taps1.max(taps2) as f64 * design.smoothing.spacing_s
         };
-        let lasts_s = campaign.synthesis.designs.iter().map(last_tap);
-        let steps = campaign.time.onset_step(lasts_s.fold(0.0, f64::max));
+        let lasts_s = group.synthesis.designs.iter().map(last_tap);
+        let steps = group.time.onset_step(lasts_s.fold(0.0, f64::max));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -71,53 +71,53 @@ impl Start {
         )]
         (finer > 1.0).then_some(Self {
             finer: finer as u32,
-            steps: steps.min(campaign.time.steps),
+            steps: steps.min(group.time.steps),
         })
     }
 
-    /// A campaign that simulates the start and nothing more. What is drawn stays the same.
+    /// A group of agents whose episodes are the start and nothing more. What is drawn stays the same.
     #[must_use]
-    pub fn campaign(self, whole: &Campaign) -> Campaign {
-        whole.clone().with(|campaign| {
-            campaign.time.step_s /= f64::from(self.finer);
-            campaign.time.steps = self.finer * self.steps;
-            campaign.time.settle_step = 0;
+    pub fn group(self, whole: &AgentGroup) -> AgentGroup {
+        whole.clone().with(|group| {
+            group.time.step_s /= f64::from(self.finer);
+            group.time.steps = self.finer * self.steps;
+            group.time.settle_step = 0;
         })
     }
 }
 
 /// A controller whose episodes (24) is asked about.
 pub struct AttenuationAnalysis<'a> {
-    campaign: &'a Campaign,
+    group: &'a AgentGroup,
     controller: &'a SimulatedController,
     index: usize,
     /// Of each channel group.
     inequalities: Vec<Result<AttenuationInequality, NotApplicable>>,
     start: Option<Start>,
-    /// What flies the start.
-    flyer: Option<Cpu>,
+    /// What simulates the start.
+    simulator: Option<Cpu>,
 }
 
 impl<'a> AttenuationAnalysis<'a> {
     /// Prepares controller number `index` of `gains`.
     #[must_use]
-    pub fn new(campaign: &'a Campaign, gains: &'a GainSet, index: usize) -> Self {
+    pub fn new(group: &'a AgentGroup, gains: &'a GainSet, index: usize) -> Self {
         let controller = &gains.controllers[index];
-        let of_groups = controller.groups.iter().zip(&campaign.synthesis.designs);
-        let start = Start::of(campaign, controller).filter(|_| controller.is_certified());
-        let flyer = start.map(|start| {
-            let campaign = start.campaign(campaign);
-            Cpu::new(&campaign, &gains.loops(), Precision::F64, None)
+        let of_groups = controller.groups.iter().zip(&group.synthesis.designs);
+        let start = Start::of(group, controller).filter(|_| controller.is_certified());
+        let simulator = start.map(|start| {
+            let group = start.group(group);
+            Cpu::new(&group, &gains.loops(), Precision::F64, None)
         });
         Self {
-            campaign,
+            group,
             controller,
             index,
             inequalities: of_groups
                 .map(|(own, design)| inequality(own, design))
                 .collect(),
             start,
-            flyer,
+            simulator,
         }
     }
 
@@ -125,10 +125,10 @@ impl<'a> AttenuationAnalysis<'a> {
     /// where there may be something to say.
     #[must_use]
     pub fn of_episode(&self, episode: u32, whole: impl FnOnce() -> Vec<Snapshot>) -> Attenuations {
-        let drawn = draw(self.campaign, episode);
+        let drawn = draw(self.group, episode);
         let known = self.known(&drawn);
         let trajectory = if known.iter().flatten().any(Result::is_ok) {
-            let start = self.flyer.as_ref();
+            let start = self.simulator.as_ref();
             Trajectory {
                 whole: whole(),
                 start: start.map_or(Vec::new(), |cpu| cpu.trace(episode, self.index, 1).1),
@@ -142,7 +142,7 @@ impl<'a> AttenuationAnalysis<'a> {
     /// What (24) says about an episode with this trajectory.
     #[must_use]
     pub fn judge(&self, episode: &Episode, trajectory: &Trajectory) -> Attenuations {
-        let step_s = self.campaign.time.step_s;
+        let step_s = self.group.time.step_s;
         let of_channel = |agent, channel, inequality: &AttenuationInequality| {
             let samples = |snapshots: &[Snapshot]| -> Vec<Sample> {
                 let of_instant = |snapshot| sample(snapshot, agent, channel);
@@ -177,26 +177,27 @@ impl<'a> AttenuationAnalysis<'a> {
     /// `[agent][channel]`.
     fn known(&self, episode: &Episode) -> Vec<Vec<Result<&AttenuationInequality, NotApplicable>>> {
         let of_channel = |agent: usize, channel: usize| {
-            let group = self.campaign.group_of(channel);
-            let inequality = self.inequalities[group].as_ref().map_err(Clone::clone)?;
-            obstacle(self.campaign, &episode.agents[agent], channel).map_or(Ok(inequality), Err)
+            let channels = self.group.group_of(channel);
+            let inequality = self.inequalities[channels].as_ref().map_err(Clone::clone)?;
+            obstacle(self.group, &episode.agents[agent], channel).map_or(Ok(inequality), Err)
         };
-        let channels = self.campaign.channels().len();
+        let channels = self.group.channels().len();
         let of_agent = |agent| {
             (0..channels)
                 .map(|channel| of_channel(agent, channel))
                 .collect()
         };
-        (0..self.campaign.team).map(of_agent).collect()
+        (0..self.group.team).map(of_agent).collect()
     }
 
     /// Sums up what it says about some episodes, a row per channel group.
     #[must_use]
     pub fn by_group(&self, episodes: &[Attenuations]) -> Vec<GroupAttenuation> {
-        let groups = self.campaign.channel_groups().into_iter();
-        groups
+        let channels = self.group.channel_groups().into_iter();
+        let name = &self.controller.name;
+        channels
             .zip(&self.controller.groups)
-            .map(|(group, own)| GroupAttenuation::of(&self.controller.name, &group, own, episodes))
+            .map(|(channels, own)| GroupAttenuation::of(self.group, name, &channels, own, episodes))
             .collect()
     }
 }
@@ -247,20 +248,21 @@ pub struct GroupAttenuation {
 
 impl GroupAttenuation {
     fn of(
+        group: &AgentGroup,
         controller: &str,
-        group: &ChannelGroup,
+        channels: &ChannelGroup,
         own: &ChannelController,
         episodes: &[Attenuations],
     ) -> Self {
         let agents = episodes.iter().flatten();
         let all: Vec<_> = agents
-            .flat_map(|channels| &channels[group.channels.clone()])
+            .flat_map(|all| &all[channels.channels.clone()])
             .collect();
         let applicable = || all.iter().filter_map(|found| found.as_ref().ok());
         let mut obstacles = all.iter().filter_map(|found| found.as_ref().err());
         Self {
             controller: controller.to_string(),
-            group: group.role.name().to_string(),
+            group: group.titled(channels.role.name()),
             flown: all.len(),
             applicable: applicable().count(),
             violated: applicable().filter(|found| !found.holds()).count(),

@@ -35,9 +35,12 @@ pub(crate) fn measure(
             }
             let alone = vec![(*controller).to_string()];
             let campaign = campaign.clone().with(|own| own.controllers = alone);
-            let gains = GainSet::synthesize_or_load(&campaign).expect("the paper's gains exist");
-            let cpu = Cpu::new(&campaign, &gains.loops(), precision, simd);
-            let steps = f64::from(campaign.time.steps) * campaign.team as f64 * f64::from(episodes);
+            let gains = GainSet::synthesize_or_load(campaign.first_group())
+                .expect("the paper's gains exist");
+            let cpu = Cpu::new(campaign.first_group(), &gains.loops(), precision, simd);
+            let steps = f64::from(campaign.time.steps)
+                * campaign.first_group().team as f64
+                * f64::from(episodes);
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(1)
                 .build()

@@ -168,7 +168,7 @@ fn team_of(base: &Campaign, team: usize) -> Campaign {
             "reference.center=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0]",
         ],
     );
-    assert_eq!(campaign.team, team);
+    assert_eq!(campaign.first_group().team, team);
     campaign
 }
 
@@ -214,6 +214,6 @@ fn simulate_all(
 
 /// Simulates a campaign on the GPU.
 fn simulate(gpu: &Gpu, campaign: &Campaign, gains: &Gains, tuning: Tuning) -> Vec<EpisodeResult> {
-    let mut simulator = GpuSimulator::new(gpu, campaign, gains, tuning).unwrap();
+    let mut simulator = GpuSimulator::new(gpu, campaign.first_group(), gains, tuning).unwrap();
     simulate_all(&mut simulator, campaign).unwrap()
 }

@@ -130,8 +130,11 @@ fn a_setting_does_what_an_editor_would_do_to_the_file() {
     assert!(content(parsed(&smoke(), &["seed=2027"]).unwrap()) != plain);
     // A list without its first entry begins with the second.
     let second = parsed(&smoke(), &["fault.0="]).unwrap();
-    assert_eq!(second.faults.len(), 1);
-    assert_eq!(&*second.faults[0].name, "sensor smoothed-square");
+    assert_eq!(second.first_group().faults.len(), 1);
+    assert_eq!(
+        &*second.first_group().faults[0].name,
+        "sensor smoothed-square"
+    );
 }
 
 #[test]

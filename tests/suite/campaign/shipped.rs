@@ -18,7 +18,7 @@ fn every_shipped_campaign_is_valid_and_bears_its_file_name() {
             Some(campaign.name.as_str()),
             path.file_stem().and_then(|stem| stem.to_str())
         );
-        GainSet::synthesize_or_load(&campaign).unwrap();
+        GainSet::synthesize_or_load(campaign.first_group()).unwrap();
         count += 1;
     }
     assert!(count >= 13, "{count} campaigns");
@@ -170,7 +170,8 @@ fn single_precision_stays_within_the_contract_over_all_episodes_that_do_not_fail
                     .channels
                     .iter()
                     .any(|channel| channel.saturated_fraction > 0.0);
-                if double.failed_step.is_some() || saturates && campaign.is_limited() {
+                if double.failed_step.is_some() || saturates && campaign.first_group().is_limited()
+                {
                     continue;
                 }
                 compared += 1;
@@ -208,10 +209,10 @@ fn regress_the_smoke_campaign_keeps_its_medians() {
             .find(|row| {
                 row.failures.controller == controller
                     && row.metric == "rmse"
-                    && row.group == "position"
+                    && *row.group == *"position"
             })
             .unwrap();
-        let median = row.quantiles[0].1.unwrap();
+        let median = row.quantiles[0].value.unwrap();
         assert!(
             (median / expected - 1.0).abs() < 0.02,
             "{controller}: {median} against {expected}"
@@ -282,8 +283,8 @@ fn a_perfect_pair_of_channels_is_a_tie_and_no_nan() {
     let campaign = campaign("smoke");
     let mut tables = tables(&campaign, Precision::F64);
     // The first controller is perfect in one channel, the second in another.
-    tables.scores.rmse[0][0] = 0.0;
-    tables.scores.rmse[1][1] = 0.0;
+    tables.scores.groups[0].rmse[0][0] = 0.0;
+    tables.scores.groups[0].rmse[1][1] = 0.0;
     for pair in compare(&campaign, &tables.scores) {
         for ratio in pair.ratios {
             let log_ratio = ratio.log_ratio.unwrap();
@@ -305,7 +306,9 @@ fn every_kind_of_fault_and_disturbance_has_a_line_in_a_shipped_campaign() {
             FaultTarget::Network,
             FaultTarget::Plant,
         ] {
-            let mut faults = all.iter().flat_map(|campaign| &campaign.faults);
+            let mut faults = all
+                .iter()
+                .flat_map(|campaign| &campaign.first_group().faults);
             assert!(
                 !kind.strikes(target)
                     || faults.any(|fault| fault.kind == kind && fault.target == target),
@@ -328,7 +331,9 @@ fn every_kind_of_fault_and_disturbance_has_a_line_in_a_shipped_campaign() {
     let kinds = of_schema("DisturbanceKind");
     assert!(kinds.len() >= 6, "{kinds:?}");
     for kind in kinds {
-        let mut disturbances = all.iter().flat_map(|campaign| &campaign.disturbances);
+        let mut disturbances = all
+            .iter()
+            .flat_map(|campaign| &campaign.first_group().disturbances);
         assert!(disturbances.any(|one| one.kind.name() == kind), "{kind}");
     }
 }
@@ -347,21 +352,21 @@ fn the_tables_hold_what_was_simulated_the_channel_that_jammed_and_delays_in_whol
         .episodes
         .to_frame()
         .unwrap();
-    let stuck = campaign.faults.len() - 2;
+    let stuck = campaign.first_group().faults.len() - 2;
     let jammed = frame.column(&format!("fault{stuck}_channel")).unwrap();
     let jammed = jammed.cast(&DataType::String).unwrap();
-    let (controllers, team) = (campaign.controllers.len(), campaign.team);
+    let (controllers, team) = (campaign.controllers.len(), campaign.first_group().team);
     let mut met = Vec::new();
     for row in 0..frame.height() {
         let (episode, agent) = (row / (controllers * team), row % team);
-        let drawn = &draw(&campaign, u32::try_from(episode).unwrap()).agents[agent];
+        let drawn = &draw(campaign.first_group(), u32::try_from(episode).unwrap()).agents[agent];
         let channel = drawn.faults[stuck]
             .strikes
             .iter()
             .position(|own| *own)
             .unwrap();
         let name = jammed.str().unwrap().get(row).unwrap();
-        assert_eq!(name, &*campaign.channels()[channel]);
+        assert_eq!(name, &*campaign.first_group().channels()[channel]);
         met.push(name.to_string());
 
         let late = drawn.faults[stuck + 1]
@@ -369,7 +374,11 @@ fn the_tables_hold_what_was_simulated_the_channel_that_jammed_and_delays_in_whol
             .iter()
             .position(|own| *own)
             .unwrap();
-        let column = format!("fault{}_delay_s_{}", stuck + 1, campaign.channels()[late]);
+        let column = format!(
+            "fault{}_delay_s_{}",
+            stuck + 1,
+            campaign.first_group().channels()[late]
+        );
         let flown_s = frame
             .column(&column)
             .unwrap()

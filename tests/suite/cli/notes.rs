@@ -79,7 +79,7 @@ fn a_requirement_on_a_stratum_or_beside_a_stop_takes_more_episodes() {
 #[test]
 fn a_walk_or_path_that_outlasts_the_episode_is_told_with_both_times() {
     let name = "biped-ground-reaction";
-    let Reference::Walk(walks) = campaign(name).reference.clone() else {
+    let Reference::Walk(walks) = campaign(name).first_group().reference.clone() else {
         panic!("no walk");
     };
     let takes_s = walks[0].walk.duration_s();

@@ -299,7 +299,7 @@ fn a_robot_shows_its_walk_and_itself() {
     for ink in ["var(--series-3)", "var(--series-4)"] {
         assert_eq!(lines(sticks, ink).len(), 7, "{ink}");
     }
-    for name in simulated.campaign.channels() {
+    for name in simulated.campaign.first_group().channels() {
         assert!(page.contains(&format!(">{name}<")), "{name}");
     }
 }

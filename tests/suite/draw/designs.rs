@@ -4,7 +4,7 @@ use crate::common::{altered, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
 use urts_mc::draw::{Episode, draw};
-use urts_mc::results::scores::{Scores, Status};
+use urts_mc::results::scores::{GroupScores, Scores, Status};
 use urts_mc::results::sensitivity::{rank, ranking_table};
 use urts_mc::results::table::Table;
 use urts_mc::results::{compare, comparison_table, summarise, summary_table, verdict};
@@ -29,7 +29,9 @@ fn replicates(campaign: &Campaign) -> Vec<Vec<Episode>> {
     let count = campaign.sampling.replicates().unwrap();
     let of_one = |replicate: u32| {
         let episodes = (0..campaign.episodes).filter(|episode| episode % count == replicate);
-        episodes.map(|episode| draw(campaign, episode)).collect()
+        episodes
+            .map(|episode| draw(campaign.first_group(), episode))
+            .collect()
     };
     (0..count).map(of_one).collect()
 }
@@ -102,7 +104,7 @@ fn every_quantity_meets_each_range_once_in_a_replicate_of_a_design() {
     // Negative control: independent numbers are not balanced.
     let plain = altered("smoke", &[]);
     let points: Vec<[f64; 1]> = (0..16)
-        .map(|episode| [uniform_quantities()[0](&draw(&plain, episode))])
+        .map(|episode| [uniform_quantities()[0](&draw(plain.first_group(), episode))])
         .collect();
     assert!(!one_each(&points, [16]));
 }
@@ -139,7 +141,11 @@ fn the_parameters_of_a_channels_disturbance_share_a_net() {
 
 #[test]
 fn designs_leave_alone_what_they_do_not_concern() {
-    let first = |campaign: &Campaign| (0..32).map(|k| draw(campaign, k)).collect::<Vec<_>>();
+    let first = |campaign: &Campaign| {
+        (0..32)
+            .map(|k| draw(campaign.first_group(), k))
+            .collect::<Vec<_>>()
+    };
     let plain = altered("smoke", &[]);
     let named = altered("smoke", &["sampling.design=independent"]);
     assert_eq!(first(&plain), first(&named));
@@ -169,14 +175,17 @@ fn designs_leave_alone_what_they_do_not_concern() {
 /// Scores of eight replicates of eight episodes: in replicate r the first controller fails r times, and the errors of
 /// the second are e^r times as large.
 fn scores(campaign: &Campaign) -> Scores {
-    let values = campaign.team * campaign.channels().len();
+    let values = campaign.first_group().team * campaign.first_group().channels().len();
     let controllers = campaign.controllers.len();
     let mut scores = Scores {
         status: vec![vec![Status::Ok; 64]; controllers],
-        rmse: vec![vec![0.01; 64 * values]; controllers],
-        max_abs: vec![vec![0.01; 64 * values]; controllers],
-        failed_step: vec![vec![None; 64 * campaign.team]; controllers],
-        fault_occurs: vec![vec![true; 64]; campaign.faults.len()],
+        groups: vec![GroupScores {
+            status: vec![vec![Status::Ok; 64]; controllers],
+            rmse: vec![vec![0.01; 64 * values]; controllers],
+            max_abs: vec![vec![0.01; 64 * values]; controllers],
+            failed_step: vec![vec![None; 64 * campaign.first_group().team]; controllers],
+        }],
+        fault_occurs: vec![vec![true; 64]; campaign.first_group().faults.len()],
         conditions: vec![(
             "mass_scale".into(),
             (0..64).map(|k| Some(f64::from(k * 37 % 64))).collect(),
@@ -187,7 +196,8 @@ fn scores(campaign: &Campaign) -> Scores {
         if row < replicate {
             scores.status[0][episode] = Status::Exceeded;
         }
-        scores.rmse[1][episode * values..][..values].fill(0.01 * (replicate as f64).exp());
+        scores.groups[0].rmse[1][episode * values..][..values]
+            .fill(0.01 * (replicate as f64).exp());
     }
     scores
 }
@@ -312,7 +322,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
     let tested = |design, replicates| {
         let campaign = sampled(design, replicates, 64);
         let ranking = rank(&campaign, &scores_of(design, replicates));
-        assert!(ranking.iter().all(|own| own.interval.is_none()));
+        assert!(ranking.iter().all(|own| own.trend.interval.is_none()));
         ranking.iter().all(|own| own.p_holm.is_some())
     };
     assert!(tested("latin-hypercube", 1) && !tested("latin-hypercube", 8) && !tested("sobol", 1));
@@ -342,5 +352,5 @@ fn the_replicate_is_a_column_and_an_episode_of_a_design_is_replayed() {
     run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
     let again = replay(out.path(), 11, "pid", None).unwrap();
     let scores = tables(&campaign, Precision::F32).scores;
-    assert!(scores.holds(&campaign, 1, 11, &again.outcomes));
+    assert!(scores.groups[0].holds(1, 11, &again.outcomes));
 }

@@ -75,7 +75,12 @@ fn faults_without_a_name_have_that_of_target_and_kind_with_a_number_where_it_is_
         fault("name = \"öl im Getriebe\""),
     ];
     let campaign = altered("smoke", &[&all.concat()]);
-    let names: Vec<&str> = campaign.faults.iter().map(|fault| &*fault.name).collect();
+    let names: Vec<&str> = campaign
+        .first_group()
+        .faults
+        .iter()
+        .map(|fault| &*fault.name)
+        .collect();
     assert_eq!(
         names,
         [
@@ -121,7 +126,10 @@ fn a_stratum_decides_which_faults_occur_and_nothing_else() {
     let plain = altered("smoke", &[]);
     let mut mixed = [0, 0];
     for index in 0..800 {
-        let (episode, undivided) = (draw(&campaign, index), draw(&plain, index));
+        let (episode, undivided) = (
+            draw(campaign.first_group(), index),
+            draw(plain.first_group(), index),
+        );
         let stratum = campaign.strata.of(index).unwrap();
         for (agent, drawn) in episode.agents.iter().zip(&undivided.agents) {
             for (fault, own) in agent.faults.iter().enumerate() {
@@ -176,7 +184,7 @@ fn what_a_stratum_makes_certain_is_not_ranked_as_if_it_were_drawn() {
     let ranking = rank(&campaign, &tables(&campaign, Precision::F32).scores);
     let n = |condition: &str| {
         let found = ranking.iter().find(|own| own.condition == condition);
-        found.map(|own| own.effect.n)
+        found.map(|own| own.episodes)
     };
     // The mixed stratum has three of eight episodes.
     assert_eq!(n("fault0_agents"), Some(36));
@@ -212,7 +220,10 @@ fn a_block_says_whether_where_when_and_how_its_agent_has_a_fault() {
     let plain = altered("smoke", &[]);
     let mut third = 0;
     for episode in 0..64 {
-        let (own, common) = (draw(&campaign, episode), draw(&plain, episode));
+        let (own, common) = (
+            draw(campaign.first_group(), episode),
+            draw(plain.first_group(), episode),
+        );
         let [first, second, last] = [0, 1, 2].map(|agent| &own.agents[agent].faults[0]);
         assert_eq!(first.strikes, [false, true, true, false, false, false]);
         assert_eq!(
@@ -239,7 +250,7 @@ fn a_stratum_spares_whom_a_fault_never_strikes() {
     let campaign = one_by_one("[[strata]]\nfaults = \"each\"\n[[strata]]\nfaults = []");
     for episode in 0..9 {
         let index = campaign.strata.index(episode).unwrap();
-        let agents = draw(&campaign, episode).agents;
+        let agents = draw(campaign.first_group(), episode).agents;
         let occurs: Vec<bool> = agents.iter().map(|own| own.faults[0].occurs()).collect();
         let certain = index == 0;
         assert_eq!(occurs, [certain, false, certain], "episode {episode}");
@@ -266,7 +277,7 @@ fn a_background_is_in_all_strata_and_none_of_its_own() {
     for episode in 0..96 {
         // As it is drawn without strata, and whatever the stratum.
         let occurs = |campaign: &Campaign| {
-            let agents = draw(campaign, episode).agents;
+            let agents = draw(campaign.first_group(), episode).agents;
             agents
                 .iter()
                 .map(|own| own.faults[2].occurs())
@@ -284,5 +295,5 @@ fn a_background_is_in_all_strata_and_none_of_its_own() {
     let of_noise = ranking
         .iter()
         .filter(|own| own.condition == "fault2_agents");
-    assert!(of_noise.clone().count() > 0 && of_noise.clone().all(|own| own.effect.n == 48));
+    assert!(of_noise.clone().count() > 0 && of_noise.clone().all(|own| own.episodes == 48));
 }

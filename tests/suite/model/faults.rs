@@ -60,7 +60,7 @@ fn parsed(more: &str, changes: &[&str]) -> Result<Campaign, CampaignError> {
 /// What every agent and channel shows at every step, `[step][agent][channel]`.
 fn trajectory(campaign: &Campaign) -> Vec<Vec<Vec<ChannelSample>>> {
     let gains = gains(campaign);
-    let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+    let cpu = Cpu::new(campaign.first_group(), &gains.loops(), Precision::F64, None);
     let (_, snapshots) = cpu.trace(0, 0, 1);
     assert_eq!(snapshots.len() as u32, campaign.time.steps + 1);
     snapshots

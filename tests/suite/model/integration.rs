@@ -9,7 +9,7 @@ use urts_mc::draw::draw;
 fn end_difference(coarse: &Campaign, fine: &Campaign) -> f64 {
     let end = |campaign: &Campaign| {
         let gains = gains(campaign);
-        let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+        let cpu = Cpu::new(campaign.first_group(), &gains.loops(), Precision::F64, None);
         let (_, snapshots) = cpu.trace(0, 0, campaign.time.steps);
         let last = snapshots.last().unwrap();
         assert_eq!(last.step, campaign.time.steps);
@@ -114,7 +114,7 @@ fn the_observer_is_told_of_the_limits() {
     };
     let campaign = quiet("3.0");
     let gains = gains(&campaign);
-    let cpu = Cpu::new(&campaign, &gains.loops(), Precision::F64, None);
+    let cpu = Cpu::new(campaign.first_group(), &gains.loops(), Precision::F64, None);
     let (outcomes, snapshots) = cpu.trace(0, 0, 10);
     assert!(
         outcomes[0].channels[3].saturated_fraction > 0.0,
@@ -135,7 +135,7 @@ fn noise_is_standard_normal_white_and_held_over_a_step() {
     let campaign = altered("scenario-a", &[noise, "time.duration_s=4.0"]);
     let gains = gains(&campaign);
     let trace = |precision, simd| {
-        Cpu::new(&campaign, &gains.loops(), precision, simd)
+        Cpu::new(campaign.first_group(), &gains.loops(), precision, simd)
             .trace(0, 1, 1)
             .1
     };
@@ -212,7 +212,9 @@ fn draws_follow_their_distributions_and_who_shares_them() {
             "agent.inertia_scale={ truncated_normal = { mean = 1.0, std = 0.2, low = 0.9, high = 1.3 }, per = \"agent\" }",
         ],
     );
-    let episodes: Vec<_> = (0..2000).map(|episode| draw(&campaign, episode)).collect();
+    let episodes: Vec<_> = (0..2000)
+        .map(|episode| draw(campaign.first_group(), episode))
+        .collect();
     let n = episodes.len() as f64;
     let mean =
         |pick: &dyn Fn(&urts_mc::draw::Episode) -> f64| episodes.iter().map(pick).sum::<f64>() / n;
@@ -304,5 +306,5 @@ fn an_unused_coupling_and_absent_faults_change_nothing() {
         })
     };
     assert_eq!(metrics(&silent(base)), metrics(&silent(bare)));
-    assert_eq!(campaign("smoke").faults.len(), 2);
+    assert_eq!(campaign("smoke").first_group().faults.len(), 2);
 }

@@ -41,7 +41,12 @@ fn val_every_metric_is_the_plain_sum_or_maximum_over_the_trajectory() {
             "smoke",
             &[settle, "time.duration_s=4.5", "initial.error_rate=2.0"],
         );
-        let cpu = Cpu::new(&campaign, &gains(&campaign).loops(), Precision::F64, None);
+        let cpu = Cpu::new(
+            campaign.first_group(),
+            &gains(&campaign).loops(),
+            Precision::F64,
+            None,
+        );
         let (outcomes, snapshots) = cpu.trace(controller, 1, 1);
         let time = campaign.time;
         // Each step counts at its start; the end of the last is no step.

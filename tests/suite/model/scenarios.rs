@@ -51,7 +51,7 @@ fn trajectory(
         .position(|name| name == controller)
         .unwrap();
     let every = (SAMPLE_S / campaign.time.step_s).round() as u32;
-    Cpu::new(campaign, &gains.loops(), precision, simd)
+    Cpu::new(campaign.first_group(), &gains.loops(), precision, simd)
         .trace(0, index, every)
         .1
 }

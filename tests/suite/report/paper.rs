@@ -81,7 +81,7 @@ fn val_the_claims_have_the_numbers_of_an_independent_program_and_the_shipped_fig
 
 /// Scenario A with changes laid over it.
 fn uavs(changes: &[&str]) -> Scenarios {
-    Scenarios::simulate(altered("scenario-a", changes)).unwrap()
+    Scenarios::simulate(&altered("scenario-a", changes)).unwrap()
 }
 
 /// What became of the UAV's claim with these words.
@@ -137,7 +137,7 @@ fn what_the_campaign_says_reaches_the_claims() {
 
 #[test]
 fn a_campaign_of_which_the_claims_cannot_be_asked_is_refused() {
-    let error = Scenarios::simulate(campaign("smoke")).unwrap_err();
+    let error = Scenarios::simulate(&campaign("smoke")).unwrap_err();
     let text = error.to_string();
     assert!(
         text.contains("smoke.toml") && text.contains("one sine"),

@@ -3,7 +3,7 @@
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
 use urts_mc::random::philox::{Address, Stream};
-use urts_mc::results::scores::{Scores, Status};
+use urts_mc::results::scores::{GroupScores, Scores, Status};
 use urts_mc::results::sensitivity::worst;
 use urts_mc::results::{
     RateMethod, compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
@@ -30,23 +30,27 @@ fn campaign(episodes: u32) -> Campaign {
 /// agents.
 fn scores(campaign: &Campaign, outcome: impl Fn(usize, usize) -> (Status, f64)) -> Scores {
     let episodes = campaign.episodes as usize;
-    let channels = campaign.team * campaign.channels().len();
+    let channels = campaign.first_group().team * campaign.first_group().channels().len();
     let controllers = 0..campaign.controllers.len();
     let errors = |controller: usize| -> Vec<f64> {
         let of_episode = |episode| vec![outcome(controller, episode).1; channels];
         (0..episodes).flat_map(of_episode).collect()
     };
+    let status: Vec<Vec<Status>> = controllers
+        .clone()
+        .map(|controller| (0..episodes).map(|k| outcome(controller, k).0).collect())
+        .collect();
     Scores {
-        status: controllers
-            .clone()
-            .map(|controller| (0..episodes).map(|k| outcome(controller, k).0).collect())
-            .collect(),
-        rmse: controllers.clone().map(errors).collect(),
-        max_abs: controllers.clone().map(errors).collect(),
-        failed_step: controllers
-            .map(|_| vec![None; episodes * campaign.team])
-            .collect(),
-        fault_occurs: vec![vec![false; episodes]; campaign.faults.len()],
+        status: status.clone(),
+        groups: vec![GroupScores {
+            status,
+            rmse: controllers.clone().map(errors).collect(),
+            max_abs: controllers.clone().map(errors).collect(),
+            failed_step: controllers
+                .map(|_| vec![None; episodes * campaign.first_group().team])
+                .collect(),
+        }],
+        fault_occurs: vec![vec![false; episodes]; campaign.first_group().faults.len()],
         conditions: Vec::new(),
     }
 }
@@ -191,13 +195,15 @@ fn the_fault_that_hurts_most_is_found_and_what_cannot_be_told_apart_is_named() {
     assert!(
         (more.interval.lower - 0.4288).abs() < 1e-4 && (more.interval.upper - 0.5686).abs() < 1e-4
     );
-    let (group, growth) = ftc.harms[1].growth[0];
-    let growth = growth.unwrap();
-    assert_eq!(group, "position");
+    let growth = &ftc.harms[1].growth[0];
+    assert_eq!(&*growth.group, "position");
+    assert!(growth.may_grow_most);
+    let growth = growth.log_growth.unwrap();
     assert!((growth.value - 2f64.ln()).abs() < 1e-12);
     assert!(growth.interval.lower > 0.6 && growth.interval.upper < 0.8);
-    let (_, none) = ftc.harms[0].growth[0];
-    let none = none.unwrap().interval;
+    let none = &ftc.harms[0].growth[0];
+    assert!(!none.may_grow_most);
+    let none = none.log_growth.unwrap().interval;
     assert!(none.lower < 0.0 && 0.0 < none.upper);
 }
 
@@ -212,7 +218,7 @@ fn without_a_stratum_free_of_faults_the_mildest_is_the_reference() {
         assert_eq!(&*screening.reference, "sensor smoothed-square");
         assert_eq!(screening.harms.len(), 1);
         // A controller that always diverges has errors that are larger by infinitely much.
-        let growth = screening.harms[0].growth[0].1.unwrap();
+        let growth = screening.harms[0].growth[0].log_growth.unwrap();
         assert_eq!(growth.interval.lower, f64::INFINITY);
     }
     // A campaign that is not divided, or has one such stratum, has nothing to compare.
@@ -380,7 +386,10 @@ fn a_single_controller_has_a_verdict_of_its_own() {
 #[test]
 fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_first() {
     let campaign = campaign(30);
-    let (team, channels) = (campaign.team, campaign.channels().len());
+    let (team, channels) = (
+        campaign.first_group().team,
+        campaign.first_group().channels().len(),
+    );
     let mut scores = scores(&campaign, |_, episode| {
         let status = match episode {
             4 | 9 | 20 => Status::Diverged,
@@ -392,9 +401,10 @@ fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_f
     // The first agent is pulled along; in episode 20 the last agent goes first, and earlier than anyone in the others.
     for (episode, step) in [(4, 700), (9, 900), (20, 300)] {
         for agent in 0..team {
-            scores.failed_step[0][episode * team + agent] = Some(step + 5 * (team - agent) as u32);
+            scores.groups[0].failed_step[0][episode * team + agent] =
+                Some(step + 5 * (team - agent) as u32);
             let first = (episode * team + agent) * channels;
-            scores.max_abs[0][first + 1..first + channels].fill(f64::NAN);
+            scores.groups[0].max_abs[0][first + 1..first + channels].fill(f64::NAN);
         }
     }
     let found = worst(&campaign, &scores);

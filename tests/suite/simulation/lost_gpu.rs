@@ -41,7 +41,7 @@ fn simulate_and_lose(
     let told = AtomicU32::new(0);
     let flight = simulate(
         &campaign,
-        gains,
+        std::slice::from_ref(gains),
         &in_batches_of_eight(backend),
         Some(gpu),
         &|episodes| {
@@ -82,18 +82,16 @@ fn a_gpu_that_is_lost_leaves_its_finished_batches_and_the_cpu_simulates_the_othe
     let gains = gains(&campaign);
     let whole = simulate(
         &campaign,
-        gains,
+        std::slice::from_ref(gains),
         &RunOptions::cpu(Precision::F32),
         None,
         &|_| (),
     )
     .unwrap();
-    for (own, other) in flight
-        .tables
-        .scores
+    for (own, other) in flight.tables.scores.groups[0]
         .rmse
         .iter()
-        .zip(&whole.tables.scores.rmse)
+        .zip(&whole.tables.scores.groups[0].rmse)
     {
         assert_eq!(own.len(), 24 * 18);
         for (own, other) in own.iter().zip(other) {
@@ -179,16 +177,32 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let campaign = short();
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let mut flight = simulate(&campaign, gains, &options, None, &|_| ()).unwrap();
+    let mut flight = simulate(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        None,
+        &|_| (),
+    )
+    .unwrap();
     let check = |flight: &Simulation| {
         let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
-        cross_check(&campaign, gains, &options, segment, scores, None, 24).unwrap()
+        cross_check(
+            &campaign,
+            std::slice::from_ref(gains),
+            &options,
+            segment,
+            scores,
+            None,
+            24,
+        )
+        .unwrap()
     };
     let sound = check(&flight);
     assert!(sound.holds() && sound.compared > 24, "{sound:?}");
     assert_eq!((sound.episodes.len(), sound.not_repeated), (24, 0));
     // One number of one episode, off by one unit in the last place.
-    let rmse = &mut flight.tables.scores.rmse[1][7 * 18 + 5];
+    let rmse = &mut flight.tables.scores.groups[0].rmse[1][7 * 18 + 5];
     *rmse = rmse.next_up();
     let unsound = check(&flight);
     assert!(!unsound.holds());
@@ -203,14 +217,30 @@ fn an_episode_whose_every_difference_grows_is_left_out_of_the_cross_check() {
     let campaign = altered("uav-faults", &["episodes=120"]);
     let gains = gains(&campaign);
     let options = RunOptions::cpu(Precision::F32);
-    let flight = simulate(&campaign, gains, &options, None, &|_| ()).unwrap();
+    let flight = simulate(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        None,
+        &|_| (),
+    )
+    .unwrap();
     let segment = Segment {
         first: 112,
         episodes: 8,
         ..flight.segments[0].clone()
     };
     let scores = &flight.tables.scores;
-    let check = cross_check(&campaign, gains, &options, &segment, scores, None, 8).unwrap();
+    let check = cross_check(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        &segment,
+        scores,
+        None,
+        8,
+    )
+    .unwrap();
     assert!(check.holds() && check.sensitive == 2, "{check:?}");
     assert!(check.compared > 12, "{check:?}");
 }

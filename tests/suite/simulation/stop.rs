@@ -138,7 +138,14 @@ fn failing() -> Campaign {
 fn simulated(options: &RunOptions, gpu: Option<&urts_mc::backend::gpu::Gpu>) -> Simulation {
     let campaign = failing();
     let gains = gains(&campaign);
-    simulate(&campaign, gains, options, gpu, &|_| ()).unwrap()
+    simulate(
+        &campaign,
+        std::slice::from_ref(gains),
+        options,
+        gpu,
+        &|_| (),
+    )
+    .unwrap()
 }
 
 #[test]

@@ -94,7 +94,7 @@ pub(super) fn visible(scenarios: &Scenarios, channels: &[usize]) -> Found {
     let [first, second, fourth] = [1.0, 2.0, 4.0].map(of);
     let unit = channels
         .first()
-        .map_or("", |channel| scenarios.campaign.unit(*channel));
+        .map_or("", |channel| scenarios.group.unit(*channel));
     Found {
         measured: format!(
             "amplitude of the error at {} rad/s {} {unit}; at {} and {} rad/s, which a symmetric square wave lacks, {} and {} {unit} \

@@ -5,7 +5,7 @@ use crate::report::paper::scenarios::Scenarios;
 use crate::util::format::number;
 
 pub(super) fn channels(scenarios: &Scenarios) -> std::ops::Range<usize> {
-    0..scenarios.campaign.channels().len()
+    0..scenarios.group.channels().len()
 }
 
 /// The largest value over channels, of quantities without a unit.
@@ -17,7 +17,7 @@ pub(super) fn worst(scenarios: &Scenarios, of: impl Fn(usize) -> f64) -> f64 {
 pub(super) type Grouped = Vec<(f64, &'static str)>;
 
 pub(super) fn grouped(scenarios: &Scenarios, of: impl Fn(&[usize]) -> f64) -> Grouped {
-    let groups = scenarios.campaign.channel_groups().into_iter();
+    let groups = scenarios.group.channel_groups().into_iter();
     groups
         .map(|group| {
             let channels: Vec<usize> = group.channels.collect();

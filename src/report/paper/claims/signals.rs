@@ -22,7 +22,7 @@ const CONSTANT: f64 = 0.1;
 
 /// The unit of the control in a channel of m or rad of an agent.
 fn effort(scenarios: &Scenarios) -> impl Fn(&str) -> String {
-    let robot = matches!(scenarios.campaign.agent, Agent::Biped(_));
+    let robot = matches!(scenarios.group.agent, Agent::Biped(_));
     move |unit| if unit == "m" && !robot { "N" } else { "N m" }.into()
 }
 
@@ -151,7 +151,7 @@ pub(super) fn sine(scenarios: &Scenarios) -> Found {
 
 /// The size of the force that a UAV's controls demand, beside its weight.
 pub(super) fn thrust(scenarios: &Scenarios) -> Found {
-    let weight = match &scenarios.campaign.agent {
+    let weight = match &scenarios.group.agent {
         Agent::Uav(uav) => uav.mass_kg * uav.gravity_m_s2 * scenarios.met.mass_scale,
         Agent::Biped(_) => f64::NAN,
     };

@@ -148,7 +148,12 @@ impl Expected {
                     *limit += shift;
                 }
             });
-            Cpu::new(&shifted, gains, against.precision, Some(Simd::Scalar))
+            Cpu::new(
+                shifted.first_group(),
+                gains,
+                against.precision,
+                Some(Simd::Scalar),
+            )
         };
         Self {
             campaign: campaign.clone(),
@@ -257,7 +262,7 @@ impl Expected {
         if failed(expected) {
             return Ok(());
         }
-        let limits = &self.campaign.verdict.max_rmse;
+        let limits = &self.campaign.first_group().verdict.max_rmse;
         for ((own, expected), limit) in own.channels.iter().zip(&expected.channels).zip(limits) {
             let near = (expected.rmse - limit).abs() <= self.against.relative[0] * limit;
             require(

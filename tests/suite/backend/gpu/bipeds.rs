@@ -116,9 +116,25 @@ fn a_run_of_bipeds_passes_its_cross_check() {
         tuning: Tuning::default(),
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = simulate(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let flight = simulate(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        Some(&gpu),
+        &|_| (),
+    )
+    .unwrap();
     let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
-    let check = cross_check(&campaign, gains, &options, segment, scores, Some(&gpu), 8).unwrap();
+    let check = cross_check(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        segment,
+        scores,
+        Some(&gpu),
+        8,
+    )
+    .unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 2, "{check:?}");
 }

@@ -102,7 +102,8 @@ fn neither_batches_nor_spans_of_steps_change_a_bit_of_what_a_link_holds() {
 fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = short(70, "\"ftc\", \"pid\"");
-    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut simulator =
+        GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
     let all = digits(&simulate_all(&mut simulator, &campaign).unwrap());
     // 43 steps: samples fall inside blocks of noise, and the last is shorter; more samples than one read-back holds.
     let mut trace = |episodes: &[u32], every: u32| {
@@ -144,7 +145,7 @@ fn a_trace_does_not_depend_on_the_order_and_company_of_its_episodes() {
 fn what_faults_remember_outlives_every_span_and_batch() {
     let Some(gpu) = gpu_or_skip() else { return };
     for name in ["uav_faults", "thrust_faults"] {
-        let faults = gpu_campaign(name, &[]).faults.len();
+        let faults = gpu_campaign(name, &[]).first_group().faults.len();
         let early = |fault| format!("fault.{fault}.onset_s.uniform=[0.1, 0.4]");
         let mut brief: Vec<String> = (0..faults).map(early).collect();
         brief.push("time.duration_s=0.9".into());

@@ -4,7 +4,7 @@ use super::simulate;
 use crate::common::{adapter_or_skip, altered, campaign, gains, gpu_or_skip};
 use std::process::Command;
 use urts_mc::backend::gpu::{Gpu, GpuError, GpuSimulator, Tuning, Wanted};
-use urts_mc::campaign::{Campaign, Validated};
+use urts_mc::campaign::{Campaign, GroupParts};
 use urts_mc::reference::Reference;
 use urts_mc::synthesis::LoopGains;
 
@@ -39,7 +39,7 @@ fn a_device_lost_in_the_middle_of_a_batch_is_an_error() {
         batch: None,
         steps: Some(100),
     };
-    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, tuning).unwrap();
+    let mut simulator = GpuSimulator::new(&gpu, campaign.first_group(), &gains, tuning).unwrap();
     let error = simulator.simulate(0..6, &|_| gpu.destroy()).unwrap_err();
     assert_lost(&error, &gpu);
     // It stays lost.
@@ -51,7 +51,8 @@ fn a_device_lost_in_the_middle_of_a_batch_is_an_error() {
 fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut simulator =
+        GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
     let error = simulator.trace(&[3, 1], 10, &mut |_| gpu.destroy());
     assert_lost(&error.err().unwrap(), &gpu);
 }
@@ -60,11 +61,12 @@ fn a_device_lost_in_the_middle_of_a_trace_is_an_error() {
 fn a_device_lost_between_batches_or_before_the_first_is_an_error() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (campaign, gains) = small();
-    let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+    let mut simulator =
+        GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
     assert_eq!(simulator.simulate(0..3, &|_| ()).unwrap().len(), 3);
     gpu.destroy();
     assert_lost(&simulator.simulate(3..6, &|_| ()).unwrap_err(), &gpu);
-    let error = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err();
+    let error = GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).err();
     assert_lost(&error.unwrap(), &gpu);
     // Another device of the same adapter is not concerned.
     let other = gpu_or_skip().unwrap();
@@ -93,7 +95,13 @@ fn shaders_that_do_not_compile_are_an_error_in_the_compilers_words() {
             assert!(text.contains(old), "{old}");
             text.replace(old, new)
         };
-        let refused = GpuSimulator::rewritten(&gpu, &campaign, &gains, Tuning::default(), &rewrite);
+        let refused = GpuSimulator::rewritten(
+            &gpu,
+            campaign.first_group(),
+            &gains,
+            Tuning::default(),
+            &rewrite,
+        );
         match refused.err() {
             Some(GpuError::Shader { adapter, reason }) => {
                 assert_eq!(adapter, gpu.adapter().name);
@@ -138,7 +146,8 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
         let campaign = campaign("smoke");
         let gains = gains(&campaign).loops();
         let gpu = Gpu::open(Wanted::Named(&name)).unwrap();
-        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).unwrap();
+        let mut simulator =
+            GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
         let many: Vec<u32> = (0..30_000).collect();
         let error = simulator.trace(&many, 1, &mut |_| ()).err().unwrap();
         println!("{error}");
@@ -153,7 +162,7 @@ fn too_little_memory_is_an_error_that_says_how_much_was_needed() {
     let (campaign, gains) = small();
     // A budget of nothing, where the driver tells how much of its memory is in use.
     let gpu = Gpu::open_within(Wanted::Named(&name), 0).unwrap();
-    match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()) {
+    match GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()) {
         Err(error) => assert_out_of_memory(&error, &gpu),
         // A software driver does not tell, but its memory is the process's own, which can be limited.
         Ok(_) if cfg!(unix) => {
@@ -194,7 +203,7 @@ fn an_adapter_that_does_not_exist_is_an_error_that_lists_those_that_do() {
 }
 
 /// Gives a campaign more agents than its file may have: the others are as the last.
-fn with_team(campaign: &mut Validated, team: usize) {
+fn with_team(campaign: &mut GroupParts, team: usize) {
     for fault in &mut campaign.faults {
         fault.probability.resize(team, fault.probability[0]);
         fault.channels.resize(team, fault.channels[0].clone());
@@ -239,7 +248,7 @@ fn a_team_too_large_for_a_workgroup_is_an_error_that_says_how_large() {
         campaign.time.steps = 1;
     });
     let gains = gains(&campaign).loops();
-    match GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err() {
+    match GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).err() {
         Some(GpuError::TooLarge {
             adapter,
             needed,

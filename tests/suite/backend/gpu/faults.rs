@@ -9,11 +9,16 @@ use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link}
 /// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.
 fn has_all(campaign: &Campaign, missing: &[FaultKind]) {
     for &kind in FaultKind::ALL {
-        let there = campaign.faults.iter().any(|fault| fault.kind == kind);
+        let there = campaign
+            .first_group()
+            .faults
+            .iter()
+            .any(|fault| fault.kind == kind);
         assert_eq!(there, !missing.contains(&kind), "{}", kind.name());
     }
     for link in [Link::Command, Link::Measurement] {
         let attacks = campaign
+            .first_group()
             .faults
             .iter()
             .filter(|fault| fault.target == FaultTarget::Network);
@@ -30,7 +35,13 @@ fn val_all_faults_of_a_uav_agree() {
         DisturbanceKind::Dryden,
         DisturbanceKind::RotorVortex,
     ] {
-        assert!(campaign.disturbances.iter().any(|one| one.kind == kind));
+        assert!(
+            campaign
+                .first_group()
+                .disturbances
+                .iter()
+                .any(|one| one.kind == kind)
+        );
     }
     // Without jets, each axis is simulated on its own; they are the last of the disturbances, so what was drawn for the
     // others stays.
@@ -53,7 +64,7 @@ fn val_faults_that_differ_from_agent_to_agent_agree() {
     { probability = 1.0, channels = "all", ramp_s = 0.3 },
 ]"#;
     let campaign = altered("smoke", &["fault.0.duration_s=2.0", blocks]);
-    assert!(campaign.faults[0].spares_some());
+    assert!(campaign.first_group().faults[0].spares_some());
     let Some([double, single]) = agreement(&campaign) else {
         return;
     };

@@ -359,7 +359,8 @@ impl Ground {
             steps: Some(300),
         };
         let mut simulator =
-            GpuSimulator::rewritten(gpu, &self.campaign, gains, tuning, rewrite).unwrap();
+            GpuSimulator::rewritten(gpu, self.campaign.first_group(), gains, tuning, rewrite)
+                .unwrap();
         // A batch that is out of order is noticed before its numbers are.
         let simulated =
             simulate_all(&mut simulator, &self.campaign).map_err(|error| error.to_string())?;

@@ -71,6 +71,7 @@ fn val_waypoints_with_noise_agree() {
     let campaign = altered("waypoints", &["episodes=16", "time.duration_s=20.0"]);
     assert!(
         campaign
+            .first_group()
             .faults
             .iter()
             .any(|fault| fault.kind.name() == "noise")
@@ -168,8 +169,9 @@ const QUANTITIES: [Quantity; 9] = [
 /// do in a simulation of all episodes; returns how many episodes were followed to the end.
 pub(super) fn followed(gpu: &Gpu, campaign: &Campaign, episodes: &[u32]) -> usize {
     let gains: Gains = gains(campaign).loops();
-    let mut simulator = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
-    let cpu = Cpu::new(campaign, &gains, Precision::F64, None);
+    let mut simulator =
+        GpuSimulator::new(gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
+    let cpu = Cpu::new(campaign.first_group(), &gains, Precision::F64, None);
     let mut instants = Vec::new();
     let traced = simulator
         .trace(episodes, 10, &mut |instant| {

@@ -41,7 +41,8 @@ fn blown() -> Campaign {
 /// on the way; returns the longest span and the steps of an episode.
 fn alike(gpu: &Gpu, campaign: &Campaign) -> [u32; 2] {
     let gains: Gains = gains(campaign).loops();
-    let mut simulator = GpuSimulator::new(gpu, campaign, &gains, Tuning::default()).unwrap();
+    let mut simulator =
+        GpuSimulator::new(gpu, campaign.first_group(), &gains, Tuning::default()).unwrap();
     let adapted = digits(&simulate_all(&mut simulator, campaign).unwrap());
     let (most, steps) = (simulator.most_steps(), campaign.time.steps);
     for span in [1, most] {
@@ -141,7 +142,7 @@ fn spans_beyond_the_bound_are_wrong_where_the_driver_ends_loops() {
             batch: None,
             steps: Some(steps),
         };
-        let mut simulator = GpuSimulator::new(&gpu, &campaign, &gains, asked).unwrap();
+        let mut simulator = GpuSimulator::new(&gpu, campaign.first_group(), &gains, asked).unwrap();
         assert!(simulator.most_steps() < steps);
         let right = digits(&simulate_all(&mut simulator, &campaign).unwrap());
         // The loops of 33 agents in four stages use up 65,535 iterations in fewer than 500 steps, and in half as many
@@ -168,9 +169,25 @@ fn a_run_of_a_team_of_33_passes_its_cross_check() {
         backend: Backend::Gpu { adapter: None },
         ..RunOptions::cpu(Precision::F32)
     };
-    let flight = simulate(&campaign, gains, &options, Some(&gpu), &|_| ()).unwrap();
+    let flight = simulate(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        Some(&gpu),
+        &|_| (),
+    )
+    .unwrap();
     let (segment, scores) = (&flight.segments[0], &flight.tables.scores);
-    let check = cross_check(&campaign, gains, &options, segment, scores, Some(&gpu), 2).unwrap();
+    let check = cross_check(
+        &campaign,
+        std::slice::from_ref(gains),
+        &options,
+        segment,
+        scores,
+        Some(&gpu),
+        2,
+    )
+    .unwrap();
     println!("{check:?}");
     assert!(check.holds() && check.compared > 0, "{check:?}");
 }
@@ -189,7 +206,7 @@ fn a_step_with_more_iterations_than_loops_may_have_is_refused() {
     let changes = [PID, "episodes=1", &many];
     let campaign = team_of(&altered("no-fault", &changes), 64);
     let gains = gains(&campaign).loops();
-    let error = GpuSimulator::new(&gpu, &campaign, &gains, Tuning::default()).err();
+    let error = GpuSimulator::new(&gpu, campaign.first_group(), &gains, Tuning::default()).err();
     let Some(error @ GpuError::TooLarge { needed, limit, .. }) = error else {
         panic!("{error:?}");
     };

@@ -26,7 +26,7 @@ fn number(value: &Value) -> f64 {
 fn scenario(case: &Value) -> Campaign {
     let campaign = campaign("scenario-biped");
     assert_eq!(campaign.time.step_s, 1e-3);
-    let Reference::Walk(walks) = &campaign.reference else {
+    let Reference::Walk(walks) = &campaign.first_group().reference else {
         panic!("scenario-biped walks");
     };
     let shifts = case["coupling_time_shifts"].as_array().unwrap();
@@ -38,7 +38,7 @@ fn scenario(case: &Value) -> Campaign {
     for k in 0..2 {
         assert_eq!(walks[0].walk.com_offset_m[k], number(&offset[k]));
     }
-    let sine = &draw(&campaign, 0).agents[0].disturbances[0];
+    let sine = &draw(campaign.first_group(), 0).agents[0].disturbances[0];
     let of_case = [number(&case["A"]), number(&case["omega"]), 0.0];
     for (drawn, of_case) in sine.iter().zip(of_case) {
         assert!(drawn.iter().all(|&drawn| drawn == of_case));
@@ -52,7 +52,7 @@ fn gains(case: &Value) -> [f64; 3] {
 }
 
 fn trajectory(campaign: &Campaign, case: &Value, gains: [f64; 3]) -> Vec<Snapshot> {
-    let mut episode = draw(campaign, 0);
+    let mut episode = draw(campaign.first_group(), 0);
     for (agent, draw) in episode.agents.iter_mut().enumerate() {
         draw.kappa = if agent == 0 {
             number(&case["coupling"])
@@ -60,7 +60,7 @@ fn trajectory(campaign: &Campaign, case: &Value, gains: [f64; 3]) -> Vec<Snapsho
             0.0
         };
     }
-    let model = Model::<f64>::new(campaign);
+    let model = Model::<f64>::new(campaign.first_group());
     let controller = Controller::true_state(&[gains]);
     model.trace::<f64>(&controller, &episode, EVERY).1
 }

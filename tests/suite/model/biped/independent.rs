@@ -54,19 +54,19 @@ fn of_leg(joints: &Joints, leg: usize) -> Vector6<f64> {
 
 impl World {
     fn new(campaign: Campaign, index: u32) -> Self {
-        let Agent::Biped(biped) = &campaign.agent else {
+        let Agent::Biped(biped) = &campaign.first_group().agent else {
             panic!("a campaign of robots");
         };
         Self {
             robot: biped.robot.clone(),
-            episode: draw(&campaign, index),
+            episode: draw(campaign.first_group(), index),
             gains: gains(&campaign).loops()[0][0],
             campaign,
         }
     }
 
     fn reference(&self, agent: usize, t_s: f64) -> [Joints; 3] {
-        let points = self.campaign.reference.at(agent, t_s);
+        let points = self.campaign.first_group().reference.at(agent, t_s);
         [
             Joints::from_fn(|c, _| points[c].value),
             Joints::from_fn(|c, _| points[c].rate),
@@ -77,10 +77,15 @@ impl World {
     /// d1 without the coupling.
     fn disturbance(&self, agent: usize, t_s: f64) -> Joints {
         let drawn = &self.episode.agents[agent].disturbances;
-        let kinds = self.campaign.disturbances.iter().map(|entry| entry.kind);
+        let kinds = self
+            .campaign
+            .first_group()
+            .disturbances
+            .iter()
+            .map(|entry| entry.kind);
         let mut sum = Joints::zeros();
         for (kind, drawn) in kinds.zip(drawn) {
-            let reference = &self.campaign.reference;
+            let reference = &self.campaign.first_group().reference;
             let ground = reference.ground_reaction(&self.robot, agent, t_s);
             sum += Joints::from_fn(|c, _| match kind {
                 DisturbanceKind::Sine => drawn[0][c] * (drawn[1][c] * t_s + drawn[2][c]).sin(),
@@ -101,7 +106,7 @@ impl World {
         let (mut sensor, mut left, mut added) =
             (Joints::zeros(), Joints::repeat(1.0), Joints::zeros());
         let drawn = &self.episode.agents[agent].faults;
-        for (fault, drawn) in self.campaign.faults.iter().zip(drawn) {
+        for (fault, drawn) in self.campaign.first_group().faults.iter().zip(drawn) {
             let begun = step >= self.campaign.time.onset_step(drawn.onset_s);
             for c in (0..JOINTS).filter(|&c| begun && drawn.strikes[c]) {
                 let value = |k: usize| drawn.parameters[k][c];
@@ -158,7 +163,7 @@ impl World {
         let limits = self.robot.joints().map(|joint| joint.torque_max_n_m);
         let limits = Joints::from_iterator(limits);
         let (mut limited, mut told) = (wanted, feedback);
-        if self.campaign.is_limited() {
+        if self.campaign.first_group().is_limited() {
             limited = Joints::from_fn(|c, _| wanted[c].clamp(-limits[c], limits[c]));
             told = each_leg(|leg| {
                 let (mass, bias) = modelled(leg);
@@ -238,7 +243,9 @@ impl World {
     /// What the team shows at every step, by the classical Runge-Kutta method.
     fn simulate(&self) -> Vec<Vec<[ChannelSample; JOINTS]>> {
         let h = self.campaign.time.step_s;
-        let mut team: Vec<State> = (0..self.campaign.team).map(|a| self.start(a)).collect();
+        let mut team: Vec<State> = (0..self.campaign.first_group().team)
+            .map(|a| self.start(a))
+            .collect();
         let mut shown = vec![];
         for step in 0..=STEPS {
             let t_s = f64::from(step) * h;
@@ -299,7 +306,7 @@ const QUANTITIES: [Quantity; 10] = [
 /// value.
 fn differences(campaign: &Campaign, world: &World) -> Vec<(&'static str, f64)> {
     let gains = gains(campaign);
-    let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
+    let cpu = Cpu::new(campaign.first_group(), &gains.loops(), Precision::F64, None);
     let snapshots = cpu.trace(world.episode.index, 0, 1).1;
     let expected = world.simulate();
     let pairs = || {

@@ -20,7 +20,7 @@ fn simulated(
     episodes: Range<u32>,
 ) -> Vec<EpisodeResult> {
     let gains = gains(campaign);
-    Cpu::new(campaign, &gains.loops(), precision, simd).simulate(episodes, &|_| ())
+    Cpu::new(campaign.first_group(), &gains.loops(), precision, simd).simulate(episodes, &|_| ())
 }
 
 fn available() -> impl Iterator<Item = Simd> {
@@ -91,8 +91,10 @@ fn single_precision_stays_within_the_contract_on_walks() {
 fn with_and_without<L: Lane>(campaign: &Campaign, wild: usize) -> [Vec<Vec<AgentOutcome>>; 2] {
     let gains = gains(campaign);
     let controller = Controller::new(&gains.loops()[0]);
-    let model = Model::new(campaign);
-    let mut episodes: Vec<Episode> = (0..L::WIDTH as u32).map(|k| draw(campaign, k)).collect();
+    let model = Model::new(campaign.first_group());
+    let mut episodes: Vec<Episode> = (0..L::WIDTH as u32)
+        .map(|k| draw(campaign.first_group(), k))
+        .collect();
     for agent in &mut episodes[wild].agents[1..] {
         agent.kappa = 0.0;
     }

@@ -21,7 +21,7 @@ fn hurried(actuation: &str) -> Campaign {
 
 /// Largest torque, the share of steps above its limit, and that limit, of every joint of every episode and controller.
 fn torques(campaign: &Campaign, precision: Precision) -> Vec<[f64; 3]> {
-    let Agent::Biped(biped) = &campaign.agent else {
+    let Agent::Biped(biped) = &campaign.first_group().agent else {
         panic!("a campaign of robots");
     };
     let limits = biped.robot.joints().map(|joint| joint.torque_max_n_m);

@@ -11,7 +11,7 @@ fn all_faults_at_once_give_the_same_bits_alone_and_in_blocks_of_any_width() {
         let campaign = Campaign::load(&path).unwrap().with_episodes(11).unwrap();
         let gains = gains(&campaign).loops();
         let digits = |precision, simd, episodes| {
-            let cpu = Cpu::new(&campaign, &gains, precision, simd);
+            let cpu = Cpu::new(campaign.first_group(), &gains, precision, simd);
             let simulated = cpu.simulate(episodes, &|_| ()).into_iter();
             simulated
                 .map(|simulated| format!("{simulated:?}"))

@@ -154,7 +154,8 @@ fn axes_in_one_group_give_the_same_bits_as_each_on_its_own() {
     let is_jet = |kind| kind == DisturbanceKind::RotorVortex;
     let gains = gains(&blowing).loops();
     let simulated = |campaign: &Campaign, precision, simd| {
-        let simulated = Cpu::new(campaign, &gains, precision, simd).simulate(0..5, &|_| ());
+        let simulated =
+            Cpu::new(campaign.first_group(), &gains, precision, simd).simulate(0..5, &|_| ());
         format!(
             "{:?}",
             simulated
@@ -166,7 +167,10 @@ fn axes_in_one_group_give_the_same_bits_as_each_on_its_own() {
     // What was drawn for the others stays: the jets are the last of the disturbances.
     let apart = blowing.clone();
     let apart = apart.with(|own| own.disturbances.retain(|one| !is_jet(one.kind)));
-    assert!(blowing.disturbances[..apart.disturbances.len()] == apart.disturbances[..]);
+    assert!(
+        blowing.first_group().disturbances[..apart.first_group().disturbances.len()]
+            == apart.first_group().disturbances[..]
+    );
     let together = blowing.clone().with(|own| {
         for one in &mut own.disturbances {
             if is_jet(one.kind) {
@@ -197,11 +201,12 @@ fn who_diverged_blows_at_nobody() {
         let more = "[[disturbance]]\nkind = \"rotor-vortex\"\nforce_n = { choice = [0.0, 5.0] }\nradius_m = 1.0\nlength_m = 1.0\n";
         let starts = format!("initial.agents=[{{ error = 0.0 }}, {{ error = {error} }}]");
         let campaign = parsed(more, &[&starts]).unwrap();
-        let forces = |index: u32| draw(&campaign, index).agents[0].disturbances[0][0][0];
+        let forces =
+            |index: u32| draw(campaign.first_group(), index).agents[0].disturbances[0][0][0];
         assert!((0..4).any(|k| forces(k) == 0.0) && (0..4).any(|k| forces(k) == 5.0));
         let gains = gains(&campaign);
         for precision in [Precision::F64, Precision::F32] {
-            let cpu = Cpu::new(&campaign, &gains.loops(), precision, None);
+            let cpu = Cpu::new(campaign.first_group(), &gains.loops(), precision, None);
             for (index, simulated) in (0..).zip(cpu.simulate(0..4, &|_| ())) {
                 let agents = &simulated.outcomes[0];
                 assert!(agents[1].failed_step.is_some() == beyond, "{error}");
@@ -285,7 +290,11 @@ fn jets_are_refused_where_they_mean_nothing() {
 fn jets_are_no_obstacle_to_the_theorem() {
     let of = |more: &str| {
         let campaign = team(more);
-        obstacle(&campaign, &draw(&campaign, 0).agents[0], Z)
+        obstacle(
+            campaign.first_group(),
+            &draw(campaign.first_group(), 0).agents[0],
+            Z,
+        )
     };
     assert_eq!(of(&of_all()), None);
     let wind = "[[disturbance]]\nkind = \"dryden\"\nwind_m_s = 9.0\naltitude_m = 6.0\nairspeed_m_s = 20.0\ngain_n_s_m = 1.5\n";

@@ -13,8 +13,8 @@ fn found(campaign: &Campaign, controller: &str, episode: u32) -> Attenuations {
     let gains = gains(campaign);
     let names = &campaign.controllers;
     let index = names.iter().position(|name| name == controller).unwrap();
-    let cpu = Cpu::new(campaign, &gains.loops(), Precision::F64, None);
-    let witness = AttenuationAnalysis::new(campaign, gains, index);
+    let cpu = Cpu::new(campaign.first_group(), &gains.loops(), Precision::F64, None);
+    let witness = AttenuationAnalysis::new(campaign.first_group(), gains, index);
     witness.of_episode(episode, || cpu.trace(episode, index, 1).1)
 }
 
@@ -126,7 +126,7 @@ fn struck(changes: &[&str]) -> Campaign {
 #[test]
 fn a_fault_that_strikes_later_rules_out_its_own_channel_only() {
     let campaign = struck(&[]);
-    let drawn = draw(&campaign, 0);
+    let drawn = draw(campaign.first_group(), 0);
     for (agent, channels) in found(&campaign, "ftc", 0).iter().enumerate() {
         for (channel, found) in channels.iter().enumerate() {
             if drawn.agents[agent].faults[0].strikes[channel] {
@@ -143,11 +143,17 @@ fn a_fault_that_strikes_later_rules_out_its_own_channel_only() {
 fn a_fault_is_smooth_if_it_is_there_from_the_start_or_never() {
     for (given, smooth) in [("0.0", true), ("0.002", false), ("5.998", false)] {
         let campaign = struck(&[&format!("fault.0.onset_s={given}")]);
-        let drawn = draw(&campaign, 0);
-        let (fault, own) = (&campaign.faults[0], &drawn.agents[0].faults[0]);
+        let drawn = draw(campaign.first_group(), 0);
+        let (fault, own) = (
+            &campaign.first_group().faults[0],
+            &drawn.agents[0].faults[0],
+        );
         assert_eq!(is_smooth(fault, own, campaign.time), smooth, "{given}");
         // The square wave is there from the start.
-        let (fault, own) = (&campaign.faults[1], &drawn.agents[0].faults[1]);
+        let (fault, own) = (
+            &campaign.first_group().faults[1],
+            &drawn.agents[0].faults[1],
+        );
         assert!(is_smooth(fault, own, campaign.time));
     }
     let from_the_start = struck(&["fault.0.onset_s=0.0"]);

@@ -1,0 +1,58 @@
+//! What all agents of a campaign have in common: its episodes, its controllers and its plan.
+
+use super::overlay::Setting;
+use super::plan::{Sampling, Stop, Strata};
+use super::time::Time;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Name of the paper's fault-tolerant controller.
+pub const FTC: &str = "ftc";
+/// Name of the PID computed-torque controller, the paper's text read plainly.
+pub const PID: &str = "pid";
+/// Name of the PID whose observer distrusts the faulty velocity channel.
+pub const PID_TUNED: &str = "pid-tuned";
+
+/// The controllers that need no file.
+pub const BUILT_IN: [&str; 3] = [FTC, PID, PID_TUNED];
+
+/// What all agents of a campaign have in common.
+#[derive(Debug, Clone)]
+pub struct Common {
+    /// The file, as it was named on the command line.
+    pub path: PathBuf,
+    /// The file's text.
+    pub text: String,
+    /// The settings laid over it with `--set`, in their order.
+    pub overlay: Vec<Setting>,
+    /// Name.
+    pub name: String,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Number of episodes, at least 1.
+    pub episodes: u32,
+    /// Names of the controllers, all different, at least one.
+    pub controllers: Vec<String>,
+    /// Duration and step.
+    pub time: Time,
+    /// Parts of the episodes with faults of their own.
+    pub strata: Strata,
+    /// How the random numbers of the episodes are chosen.
+    pub sampling: Sampling,
+    /// When the run may end early, if it may.
+    pub stop: Option<Stop>,
+    /// Conditions on the result.
+    pub requirements: Vec<Requirement>,
+}
+
+/// A condition on the result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirement {
+    /// The controller that has to meet it.
+    pub controller: String,
+    /// The stratum in which it has to, or [`ALL`](super::ALL) episodes.
+    pub stratum: Arc<str>,
+    /// Upper limit of the one-sided 95 % bound of the failure rate: Clopper-Pearson's, or that of the confidence
+    /// sequence where `[stop]` decides on the number of episodes.
+    pub failure_rate_upper_95: f64,
+}
