@@ -43,6 +43,16 @@ impl RateMethod {
         }
     }
 
+    /// What an interval of it is, in a word or two.
+    #[must_use]
+    pub fn short(self) -> &'static str {
+        match self {
+            Self::Wilson => "Wilson 95 %",
+            Self::Sequential => "sequential 95 %",
+            Self::Replicates => "t 95 %",
+        }
+    }
+
     /// The word in the names of columns and keys.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -1,10 +1,10 @@
-//! What a report says, apart from how it looks: the same blocks become HTML and Markdown.
+//! What a report or a command says, apart from how it looks: the same blocks become HTML, Markdown and text.
 
 use super::plot::{Color, Plot, Stroke};
 use crate::util::format;
 
 /// A report.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Document {
     pub(crate) title: String,
     /// What it is about, in a line.
@@ -17,18 +17,39 @@ pub(crate) struct Document {
 }
 
 /// A part of a report.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Section {
+    /// Empty where what it says needs none.
     pub(crate) heading: String,
+    /// What the heading stands for, as its continuation: with a comma, a colon or in parentheses.
+    pub(crate) note: String,
     pub(crate) blocks: Vec<Block>,
 }
 
 impl Section {
     pub(crate) fn new(heading: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self::explained(heading, "", blocks)
+    }
+
+    /// With what the heading stands for.
+    pub(crate) fn explained(
+        heading: impl Into<String>,
+        note: impl Into<String>,
+        blocks: Vec<Block>,
+    ) -> Self {
         Self {
             heading: heading.into(),
+            note: note.into(),
             blocks,
         }
+    }
+
+    /// Whether there is nothing in it.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.blocks.iter().all(|block| match block {
+            Block::Grid(grid) => grid.rows.is_empty(),
+            Block::Text(_) | Block::Code(_) | Block::Figure(_) | Block::Folded(..) => false,
+        })
     }
 }
 

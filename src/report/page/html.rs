@@ -54,7 +54,7 @@ pub(crate) fn html(document: &Document) -> String {
 fn of_section(index: usize, section: &Section) -> Markup {
     html! {
         section id={ "s" (index) } {
-            h2 { (section.heading) }
+            h2 { (section.heading) (section.note) }
             @for block in &section.blocks { (of_block(block)) }
         }
     }

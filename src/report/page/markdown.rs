@@ -23,7 +23,8 @@ pub(crate) fn markdown(document: &Document) -> String {
             .for_each(|block| of_block(&mut body, block));
         // A section of drawings alone has nothing to say here.
         if !body.is_empty() {
-            text.push_str(&format!("\n## {}\n{body}", plain(&section.heading)));
+            let heading = format!("{}{}", section.heading, section.note);
+            text.push_str(&format!("\n## {}\n{body}", plain(&heading)));
         }
     }
     text

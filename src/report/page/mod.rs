@@ -1,4 +1,4 @@
-//! How a report looks: the document as HTML and Markdown, and plots as SVG.
+//! How a report or what a command prints looks: the document as HTML, Markdown and text, and plots as SVG.
 
 pub(crate) mod clip_ids;
 pub(crate) mod document;
@@ -6,4 +6,5 @@ pub(crate) mod html;
 pub(crate) mod markdown;
 pub(crate) mod plot;
 pub(crate) mod plot_grid;
+pub(crate) mod text;
 mod ticks;

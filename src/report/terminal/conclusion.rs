@@ -1,56 +1,39 @@
 //! What a run comes to: its verdict and its requirements.
 
-use super::style::{heading, judged};
-use super::text::line;
 use crate::campaign::Campaign;
+use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::results::{RequirementResult, how_sure};
 use crate::run::Findings;
 use crate::util::format::rounded_up;
 
 /// Who does better, in a sentence each.
-pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    let sentences = &findings.manifest.verdict;
-    if !sentences.is_empty() {
-        let sure = match findings.manifest.episodes {
-            1 => String::new(),
-            _ => format!(" ({})", how_sure(campaign)),
-        };
-        line(&mut text, &format!("\n{}{sure}", heading("in short")));
-    }
-    for sentence in sentences {
-        line(&mut text, &format!("  {sentence}"));
-    }
-    text
+pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> Section {
+    let sure = match findings.manifest.episodes {
+        1 => String::new(),
+        _ => format!(" ({})", how_sure(campaign)),
+    };
+    let sentences = findings.results.verdict.iter().map(Block::text);
+    Section::explained("in short", sure, sentences.collect())
 }
 
 /// What became of each `[[require]]`, one a line.
-pub(super) fn requirements(results: &[RequirementResult]) -> String {
-    let mut text = String::new();
-    if !results.is_empty() {
-        line(
-            &mut text,
-            &format!(
-                "\n{}: the failure rate with 95 % confidence",
-                heading("requirements")
-            ),
-        );
-    }
-    let width = results.iter().map(|own| own.subject().chars().count());
-    let width = width.max().unwrap_or(0);
+pub(super) fn requirements(results: &[RequirementResult]) -> Section {
+    let mut grid = Grid::default();
     for (index, result) in results.iter().enumerate() {
-        line(
-            &mut text,
-            &format!(
-                "  {}  require[{index}]  {:<width$}  below {}, required {:.4} ({} of {} failed)",
-                judged(result.is_met(), "met  ", "UNMET"),
-                result.subject(),
+        let met = result.is_met();
+        grid.rows.push(vec![
+            Cell::Verdict(met, if met { "met" } else { "UNMET" }.into()),
+            Cell::text(format!("require[{index}]")),
+            Cell::text(result.subject()),
+            Cell::text(format!(
+                "below {}, required {:.4} ({} of {} failed)",
                 rounded_up(result.upper_95, 4),
                 result.limit,
                 result.failed,
                 result.n
-            ),
-        );
+            )),
+        ]);
     }
-    text
+    let note = ": the failure rate with 95 % confidence";
+    Section::explained("requirements", note, vec![Block::Grid(grid)])
 }

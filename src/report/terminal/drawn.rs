@@ -1,9 +1,9 @@
 //! The ranges of all that a campaign draws.
 
-use super::text::line;
 use crate::campaign::{AgentGroup, Campaign};
 use crate::draw::quantities::{Source, quantities};
 use crate::draw::{AgentDraw, draw};
+use crate::report::page::document::{Block, Cell, Grid, Section};
 use serde_json::{Value, json};
 
 /// Episodes that are drawn to show real ranges.
@@ -22,26 +22,10 @@ struct Subject {
 }
 
 /// The ranges, for people.
-pub(super) fn drawn(campaign: &Campaign) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "  drawn in the first {} episodes, as applied (lowest .. highest):",
-            DRAWS.min(campaign.episodes)
-        ),
-    );
+pub(super) fn drawn(campaign: &Campaign) -> Section {
+    let mut blocks = Vec::new();
     for subject in subjects(campaign) {
-        let indent = if subject.title.is_empty() {
-            "    "
-        } else {
-            let occurs = subject.occurs.map_or(String::new(), |[with, all]| {
-                let percent = 100.0 * with as f64 / all.max(1) as f64;
-                format!(", in {with} of {all} agents ({percent:.1} %)")
-            });
-            line(&mut text, &format!("    {}{occurs}", subject.title));
-            "      "
-        };
+        let mut grid = Grid::default();
         for (name, values) in &subject.quantities {
             let Some([low, high]) = range(values) else {
                 continue;
@@ -51,13 +35,30 @@ pub(super) fn drawn(campaign: &Campaign) -> String {
             } else {
                 format!("{low:.6} .. {high:.6}")
             };
-            line(
-                &mut text,
-                &format!("{indent}{name:<24} {range}   ({} values)", values.len()),
-            );
+            let values = format!("({} values)", values.len());
+            grid.rows.push(vec![
+                Cell::text(name),
+                Cell::text(range),
+                Cell::text(values),
+            ]);
+        }
+        if subject.title.is_empty() {
+            blocks.push(Block::Grid(grid));
+        } else {
+            let occurs = subject.occurs.map_or(String::new(), |[with, all]| {
+                let percent = 100.0 * with as f64 / all.max(1) as f64;
+                format!(", in {with} of {all} agents ({percent:.1} %)")
+            });
+            let title = format!("{}{occurs}", subject.title);
+            blocks.push(Block::Folded(title, vec![Block::Grid(grid)]));
         }
     }
-    text
+    let episodes = DRAWS.min(campaign.episodes);
+    Section::explained(
+        format!("drawn in the first {episodes} episodes"),
+        ", as applied (lowest .. highest):",
+        blocks,
+    )
 }
 
 /// The ranges, for programs: one after the other, and of each fault the share of the agents that have it.

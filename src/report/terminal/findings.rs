@@ -4,13 +4,13 @@ use super::attenuation;
 use super::conclusion::{in_short, requirements};
 use super::pairs::pairs;
 use super::screening::strata;
-use super::style::heading;
-use super::text::{kind_of_interval, line};
 use crate::campaign::{ALL, Campaign};
 use crate::draw::quantities::title;
 use crate::report::notes::caveats;
-use crate::results::FailureRate;
-use crate::results::sensitivity::SensitivityResult;
+use crate::report::page::document::{Block, Cell, Document, Grid, Section};
+use crate::report::page::text::text;
+use crate::results::sensitivity::{SensitivityResult, WorstEpisode};
+use crate::results::{FailureRate, RateMethod};
 use crate::run::Findings;
 use crate::run::manifest::Manifest;
 use crate::run::replay::command;
@@ -25,129 +25,117 @@ const STRONGEST: usize = 3;
 
 /// The findings of a run at a glance.
 pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
-    let mut text = simulated(campaign, &findings.manifest);
-    text.push_str(&failure_rates(campaign, findings));
-    for caveat in caveats(campaign, &findings.manifest) {
-        line(&mut text, &caveat);
-    }
-    text.push_str(&strata(campaign, findings));
-    text.push_str(&rms_errors(campaign, findings));
-    text.push_str(&pairs(campaign, findings));
-    text.push_str(&what_matters(campaign, findings));
-    text.push_str(&worst(findings, out));
-    text.push_str(&in_short(campaign, findings));
-    text.push_str(&requirements(&findings.manifest.requirements));
-    text.push_str(&written(findings.manifest.times, out));
-    text
+    let manifest = &findings.manifest;
+    let [by_stratum, harm] = strata(campaign, findings);
+    text(&Document {
+        title: campaign.name.clone(),
+        subtitle: simulated(campaign, manifest),
+        lead: beside(campaign, manifest),
+        warnings: Vec::new(),
+        sections: vec![
+            failure_rates(campaign, findings),
+            by_stratum,
+            harm,
+            rms_errors(campaign, findings),
+            pairs(campaign, findings),
+            what_matters(campaign, findings),
+            worst(findings, out),
+            in_short(campaign, findings),
+            requirements(&manifest.requirements),
+            written(manifest.times, out),
+        ],
+    })
 }
 
-/// What was simulated on what, and the cross-check.
+/// What was simulated on what.
 fn simulated(campaign: &Campaign, manifest: &Manifest) -> String {
-    let mut text = String::new();
     let precision = format!("{:?}", manifest.precision).to_lowercase();
     let engines = manifest
         .segments
         .iter()
         .map(|segment| segment.engine.to_string());
-    let engines: Vec<String> = engines.collect();
-    line(
-        &mut text,
-        &format!(
-            "{}: {} x {}, seed {}, {precision} on {}, {:.1} s of simulation",
-            heading(&campaign.name),
-            counted(manifest.episodes),
-            campaign.agents_in_words(),
-            campaign.seed,
-            engines.join(", then on "),
-            manifest.times.loop_s
-        ),
-    );
-    for note in &manifest.notes {
-        line(&mut text, &format!("note: {note}"));
-    }
+    format!(
+        "{} x {}, seed {}, {precision} on {}, {:.1} s of simulation",
+        counted(manifest.episodes),
+        campaign.agents_in_words(),
+        campaign.seed,
+        engines.collect::<Vec<_>>().join(", then on "),
+        manifest.times.loop_s
+    )
+}
+
+/// What there is to know beside: notes and the cross-check.
+fn beside(campaign: &Campaign, manifest: &Manifest) -> Vec<String> {
+    let notes = manifest.notes.iter().map(|note| format!("note: {note}"));
+    let mut sentences: Vec<String> = notes.collect();
     if let Some(check) = &manifest.cross_check {
-        line(&mut text, &cross_check(check, campaign.controllers.len()));
-        text.push_str(&attenuation::groups(&check.attenuation));
+        sentences.push(cross_check(check, campaign.controllers.len()));
+        sentences.extend(attenuation::groups(&check.attenuation));
     }
-    text
+    sentences
 }
 
 /// How often each controller failed.
-fn failure_rates(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &match campaign.agents() {
-            1 => format!("\n{}", heading("failures")),
-            _ => format!(
-                "\n{} (an episode fails with any of its {})",
-                heading("failures"),
-                campaign.plural()
-            ),
-        },
-    );
-    line(
-        &mut text,
-        &format!(
-            "  {:<12} {:>14}  {:>8}  {:<19} {}",
-            "controller",
-            "failed",
-            "rate",
-            kind_of_interval(campaign),
-            "95 % sure below"
-        ),
-    );
+fn failure_rates(campaign: &Campaign, findings: &Findings) -> Section {
+    let interval = RateMethod::of(campaign).short();
+    let mut grid = Grid::new([
+        "controller",
+        "failed",
+        "rate",
+        interval,
+        "95 % sure below",
+        "",
+    ]);
     let of_all = |rate: &&FailureRate| *rate.stratum == *ALL;
     for failures in findings.results.failures.iter().filter(of_all) {
         let name = match &failures.agents {
             None => failures.controller.clone(),
             Some(group) => format!("  {group}"),
         };
-        line(
-            &mut text,
-            &format!(
-                "  {name:<12} {:>14}  {:>7.2}%  {:<19} {}{}",
-                format!("{} of {}", failures.failed(), failures.n),
-                100.0 * failures.rate(),
-                failures
-                    .interval
-                    .map_or("-".to_string(), |interval| format!(
-                        "{:.2} .. {:.2}%",
-                        100.0 * interval.lower,
-                        100.0 * interval.upper
-                    )),
-                failures.upper_95.map_or("-".to_string(), |upper| format!(
-                    "{}%",
-                    rounded_up(100.0 * upper, 2)
-                )),
-                if failures.diverged > 0 {
-                    format!("  ({} diverged)", failures.diverged)
-                } else {
-                    String::new()
-                },
-            ),
-        );
+        let interval = failures.interval.map_or("-".to_string(), |interval| {
+            format!(
+                "{:.2} .. {:.2}%",
+                100.0 * interval.lower,
+                100.0 * interval.upper
+            )
+        });
+        let bound = failures.upper_95.map_or("-".to_string(), |upper| {
+            format!("{}%", rounded_up(100.0 * upper, 2))
+        });
+        let diverged = match failures.diverged {
+            0 => String::new(),
+            diverged => format!("({diverged} diverged)"),
+        };
+        grid.rows.push(vec![
+            Cell::text(name),
+            Cell::Number(format!("{} of {}", failures.failed(), failures.n)),
+            Cell::Number(format!("{:.2}%", 100.0 * failures.rate())),
+            Cell::Text(interval),
+            Cell::Text(bound),
+            Cell::Text(diverged),
+        ]);
     }
-    text
+    let note = match campaign.agents() {
+        1 => String::new(),
+        _ => format!(" (an episode fails with any of its {})", campaign.plural()),
+    };
+    let caveats = caveats(campaign, &findings.manifest).into_iter();
+    let blocks = std::iter::once(Block::Grid(grid)).chain(caveats.map(Block::Text));
+    Section::explained("failures", note, blocks.collect())
 }
 
 /// How large the errors of each controller were.
-fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "\n{}, median [95 % interval] and 95th percentile over the episodes",
-            heading("RMS error from settle_s on")
-        ),
-    );
-    let roles = campaign.channel_groups();
-    let mut head = format!("  {:<12}", "controller");
-    for role in &roles {
-        let title = format!("{}, {}", role.name, role.role.unit());
-        head.push_str(&format!(" {title:>34} "));
-    }
-    line(&mut text, head.trim_end());
+fn rms_errors(campaign: &Campaign, findings: &Findings) -> Section {
+    let channels = campaign.channel_groups();
+    let titles = channels
+        .iter()
+        .map(|of| format!("{}, {}", of.name, of.role.unit()));
+    let mut grid = Grid {
+        head: std::iter::once("controller".to_string())
+            .chain(titles)
+            .collect(),
+        rows: Vec::new(),
+    };
     for name in &campaign.controllers {
         let cell = |group: &str| {
             let row = findings.results.summary.iter().find(|row| {
@@ -165,31 +153,29 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> String {
                 format!("{}{interval}, {}", value(0), value(1))
             })
         };
-        let mut cells = format!("  {name:<12}");
-        for role in &roles {
-            cells.push_str(&format!(" {:>34} ", cell(&role.name)));
-        }
-        line(&mut text, cells.trim_end());
+        let cells = channels.iter().map(|of| Cell::Number(cell(&of.name)));
+        grid.rows
+            .push(std::iter::once(Cell::text(name)).chain(cells).collect());
     }
-    text
+    Section::explained(
+        "RMS error from settle_s on",
+        ", median [95 % interval] and 95th percentile over the episodes",
+        vec![Block::Grid(grid)],
+    )
 }
 
 /// Where the files are, and how long it all took.
-fn written(times: Times, out: &Path) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "\nwritten to {} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
-            out.display(),
-            times.synthesis_s,
-            times.loop_s,
-            times.cross_check_s,
-            times.statistics_s,
-            times.writing_s
-        ),
+fn written(times: Times, out: &Path) -> Section {
+    let text = format!(
+        "written to {} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
+        out.display(),
+        times.synthesis_s,
+        times.loop_s,
+        times.cross_check_s,
+        times.statistics_s,
+        times.writing_s
     );
-    text
+    Section::new("", vec![Block::Text(text)])
 }
 
 /// So many episodes.
@@ -222,7 +208,7 @@ fn cross_check(check: &CrossCheck, controllers: usize) -> String {
 }
 
 /// What raises failures and errors of each controller, as far as it is sure.
-fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
+fn what_matters(campaign: &Campaign, findings: &Findings) -> Section {
     let sure: Vec<&SensitivityResult> = findings
         .results
         .ranking
@@ -230,17 +216,7 @@ fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
         .filter(|ranked| ranked.target.kind != "log_ratio")
         .filter(|ranked| ranked.p_holm.is_some_and(|p_holm| p_holm <= SIGNIFICANCE))
         .collect();
-    let mut text = String::new();
-    if sure.is_empty() {
-        return text;
-    }
-    line(
-        &mut text,
-        &format!(
-            "\n{}: rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
-            heading("what matters")
-        ),
-    );
+    let mut grid = Grid::default();
     for same in sure.chunk_by(|a, b| a.target == b.target) {
         let target = &same[0].target;
         let about = target.group.as_deref().unwrap_or("failures");
@@ -251,52 +227,43 @@ fn what_matters(campaign: &Campaign, findings: &Findings) -> String {
             let condition = title(campaign, &ranked.condition);
             format!("{condition} {:+.2}{interval}", ranked.trend.value)
         });
-        let strongest: Vec<String> = strongest.collect();
-        line(
-            &mut text,
-            &format!(
-                "  {:<12} {about:<9} {}",
-                target.controller,
-                strongest.join(", ")
-            ),
-        );
+        grid.rows.push(vec![
+            Cell::text(&target.controller),
+            Cell::text(about),
+            Cell::text(strongest.collect::<Vec<_>>().join(", ")),
+        ]);
     }
-    text
+    Section::explained(
+        "what matters",
+        ": rank correlation [95 %] with failures and with the RMS error, the strongest of those that are sure at 5 %",
+        vec![Block::Grid(grid)],
+    )
 }
 
 /// The worst episode of each controller, and how to see it.
-fn worst(findings: &Findings, out: &Path) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "\n{} (worst.csv has ten)",
-            heading("worst episode of each controller")
-        ),
-    );
-    for worst in findings
-        .results
-        .worst
-        .iter()
-        .filter(|worst| worst.rank == 1)
-    {
-        line(
-            &mut text,
-            &format!(
-                "  {:<12} {}{}: {}",
-                worst.controller,
-                worst.status.word(),
-                if worst.excess.is_finite() {
-                    format!(
-                        ", |e| up to {:.2} of the limit on {} of agent {}",
-                        worst.excess, worst.channel, worst.agent
-                    )
-                } else {
-                    String::new()
-                },
-                command(out, worst.episode, &worst.controller)
+fn worst(findings: &Findings, out: &Path) -> Section {
+    let cells = |worst: &WorstEpisode| {
+        let largest = match worst.excess.is_finite() {
+            true => format!(
+                ", |e| up to {:.2} of the limit on {} of agent {}",
+                worst.excess, worst.channel, worst.agent
             ),
-        );
-    }
-    text
+            false => String::new(),
+        };
+        let command = command(out, worst.episode, &worst.controller);
+        vec![
+            Cell::text(&worst.controller),
+            Cell::Text(format!("{}{largest}: {command}", worst.status.word())),
+        ]
+    };
+    let worst = findings.results.worst.iter();
+    let grid = Grid {
+        head: Vec::new(),
+        rows: worst.filter(|worst| worst.rank == 1).map(cells).collect(),
+    };
+    Section::explained(
+        "worst episode of each controller",
+        " (worst.csv has ten)",
+        vec![Block::Grid(grid)],
+    )
 }

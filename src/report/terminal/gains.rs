@@ -1,9 +1,9 @@
 //! Gains and what is known about them.
 
-use super::style::{heading, judged};
-use super::text::line;
 use crate::campaign::{AgentGroup, Campaign, FTC, PID, PID_TUNED};
-use crate::controllers::{self, GainSet, built_in};
+use crate::controllers::{self, GainSet, SimulatedController, built_in};
+use crate::report::page::document::{Block, Cell, Document, Grid, Section};
+use crate::report::page::text::text;
 use crate::synthesis::{ChannelSynthesis, ControllerGains};
 
 /// The gains of a campaign, a set of each group of agents, and what is known about them.
@@ -16,74 +16,73 @@ pub fn gains(campaign: &Campaign, gains: &[GainSet]) -> String {
 }
 
 fn of_group(group: &AgentGroup, gains: &GainSet) -> String {
-    let mut text = String::new();
-    let path = group.path.display().to_string();
+    let controllers = gains.controllers.iter();
     let preset = format!("preset {}", group.synthesis.preset);
-    line(&mut text, &format!("{path}: {}", group.titled(&preset)));
-    let names = group.channel_groups();
+    text(&Document {
+        title: group.path.display().to_string(),
+        subtitle: group.titled(&preset),
+        sections: controllers.map(|own| of_controller(group, own)).collect(),
+        ..Document::default()
+    })
+}
+
+fn of_controller(group: &AgentGroup, controller: &SimulatedController) -> Section {
     let designs = &group.synthesis.designs;
-    for controller in &gains.controllers {
-        let title = heading(&controller.name);
-        line(&mut text, &format!("\n{title} ({})", controller.source));
-        // Channel groups with the same gains are said once.
-        let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
-        for (index, (name, own)) in names.iter().zip(&controller.groups).enumerate() {
-            let same = said.iter_mut().find(|(_, other)| {
-                designs[*other] == designs[index] && controller.groups[*other].gains == own.gains
-            });
-            match same {
-                Some((names, _)) => names.push(name.role.name()),
-                None => said.push((vec![name.role.name()], index)),
-            }
-        }
-        for (names, index) in said {
-            line(&mut text, &format!("  {}", names.join(" and ")));
-            let own = &controller.groups[index];
-            channel(&mut text, &own.gains, own.findings.as_ref());
+    // Channel groups with the same gains are said once.
+    let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
+    let channels = group.channel_groups();
+    for (index, (channels, own)) in channels.iter().zip(&controller.groups).enumerate() {
+        let same = said.iter_mut().find(|(_, other)| {
+            designs[*other] == designs[index] && controller.groups[*other].gains == own.gains
+        });
+        match same {
+            Some((names, _)) => names.push(channels.role.name()),
+            None => said.push((vec![channels.role.name()], index)),
         }
     }
-    text
+    let blocks = said.into_iter().map(|(names, index)| {
+        let own = &controller.groups[index];
+        let inner = channel(&own.gains, own.findings.as_ref());
+        Block::Folded(names.join(" and "), inner)
+    });
+    let source = format!(" ({})", controller.source);
+    Section::explained(&controller.name, source, blocks.collect())
 }
 
 /// The gains of a preset's channel group and what is known about them.
 pub fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
-    let mut text = String::new();
-    for name in [FTC, PID, PID_TUNED] {
-        line(&mut text, &heading(&format!("{name}, {role}")));
+    let of_controller = |name: &str| {
         let (gains, findings) = built_in(synthesis, name);
-        channel(&mut text, gains, Some(&findings));
-    }
-    text
+        Section::new(format!("{name}, {role}"), channel(gains, Some(&findings)))
+    };
+    text(&Document {
+        sections: [FTC, PID, PID_TUNED].map(of_controller).to_vec(),
+        ..Document::default()
+    })
 }
 
 /// The gains of a channel group, and what is known about them.
-fn channel(text: &mut String, gains: &ControllerGains, findings: Option<&controllers::Findings>) {
+fn channel(gains: &ControllerGains, findings: Option<&controllers::Findings>) -> Vec<Block> {
     let numbers = |values: &[f64]| {
-        values
-            .iter()
-            .map(|value| format!("{value:.5}"))
-            .collect::<Vec<_>>()
-            .join("  ")
+        let values = values.iter().map(|value| format!("{value:.5}"));
+        Cell::Text(values.collect::<Vec<_>>().join("  "))
     };
-    line(text, &format!("    K  {}", numbers(&gains.k)));
+    let mut grid = Grid::default();
+    grid.rows.push(vec![Cell::text("K"), numbers(&gains.k)]);
     for (row, values) in gains.l.iter().enumerate() {
-        line(
-            text,
-            &format!(
-                "    {}  {}",
-                if row == 0 { "L" } else { " " },
-                numbers(values)
-            ),
-        );
+        let name = if row == 0 { "L" } else { "" };
+        grid.rows.push(vec![Cell::text(name), numbers(values)]);
     }
+    let mut blocks = vec![Block::Grid(grid)];
     if let Some(findings) = findings {
-        analysis(text, findings);
-        proof(text, findings);
+        blocks.extend(analysis(findings));
+        blocks.extend(proof(findings));
     }
+    blocks
 }
 
 /// How the closed loop behaves.
-fn analysis(text: &mut String, findings: &controllers::Findings) {
+fn analysis(findings: &controllers::Findings) -> [Block; 3] {
     let poles = |poles: &[[f64; 2]]| {
         let pole = |[re, im]: &[f64; 2]| {
             if *im == 0.0 {
@@ -94,61 +93,51 @@ fn analysis(text: &mut String, findings: &controllers::Findings) {
         };
         poles.iter().map(pole).collect::<Vec<_>>().join("  ")
     };
-    line(
-        text,
-        &format!(
-            "    poles of A + B K, 1/s  {}",
-            poles(&findings.analysis.controller_poles)
-        ),
-    );
-    line(
-        text,
-        &format!(
-            "    poles of A + L C, 1/s  {}",
-            poles(&findings.analysis.observer_poles)
-        ),
-    );
-    let margins = &findings.analysis.margins;
-    line(
-        text,
-        &format!(
-            "    margins  Ms {:.3}, phase {:.1} deg, delay {:.2} ms at {:.1} rad/s",
+    let found = &findings.analysis;
+    let margins = &found.margins;
+    [
+        format!("poles of A + B K, 1/s  {}", poles(&found.controller_poles)),
+        format!("poles of A + L C, 1/s  {}", poles(&found.observer_poles)),
+        format!(
+            "margins  Ms {:.3}, phase {:.1} deg, delay {:.2} ms at {:.1} rad/s",
             margins.sensitivity_peak,
             margins.phase_margin_deg,
             margins.delay_margin_ms,
             margins.crossover_rad_s
         ),
-    );
+    ]
+    .map(Block::Text)
 }
 
 /// What is certified, and what was checked for it.
-fn proof(text: &mut String, findings: &controllers::Findings) {
-    if let Some(certificate) = &findings.certificate {
-        line(
-            text,
-            &format!(
-                "    certified attenuation rho {:.4} (true H-infinity norm {:.4}); largest eigenvalue of (27) {:.2e}",
-                certificate.rho, certificate.hinf_norm, certificate.max_eigenvalue
-            ),
-        );
-    }
-    for solved in &findings.solver {
-        line(
-            text,
-            &format!(
-                "    solver  {}: {} in {} iterations",
-                solved.step, solved.status, solved.iterations
-            ),
-        );
-    }
-    for check in &findings.checks {
-        let sign = judged(check.passed, "ok", "FAILED");
-        line(
-            text,
-            &format!(
-                "    check   {sign}  {}: {}: {:.3e}, must be below {:.3e}",
+fn proof(findings: &controllers::Findings) -> Vec<Block> {
+    let certificate = findings.certificate.iter().map(|certificate| {
+        format!(
+            "certified attenuation rho {:.4} (true H-infinity norm {:.4}); largest eigenvalue of (27) {:.2e}",
+            certificate.rho, certificate.hinf_norm, certificate.max_eigenvalue
+        )
+    });
+    let solver = findings.solver.iter().map(|solved| {
+        format!(
+            "solver  {}: {} in {} iterations",
+            solved.step, solved.status, solved.iterations
+        )
+    });
+    let checks = findings.checks.iter().map(|check| {
+        let passed = if check.passed { "ok" } else { "FAILED" };
+        vec![
+            Cell::text("check"),
+            Cell::Verdict(check.passed, passed.into()),
+            Cell::Text(format!(
+                "{}: {}: {:.3e}, must be below {:.3e}",
                 check.step, check.name, check.value, check.limit
-            ),
-        );
-    }
+            )),
+        ]
+    });
+    let checks = Block::Grid(Grid {
+        head: Vec::new(),
+        rows: checks.collect(),
+    });
+    let texts = certificate.chain(solver).map(Block::Text);
+    texts.chain([checks]).collect()
 }

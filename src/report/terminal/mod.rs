@@ -12,15 +12,13 @@ mod plan;
 mod replay;
 mod runs;
 mod screening;
-mod style;
-mod text;
 mod written;
 
+pub use crate::report::page::text::BAD;
 pub use devices::devices;
 pub use findings::findings;
 pub use gains::{gains, synthesis};
 pub use plan::{plan, plan_json};
 pub use replay::{replay, replay_json};
 pub use runs::{runs, runs_json};
-pub use style::BAD;
 pub use written::{paper, report};

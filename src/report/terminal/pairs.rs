@@ -1,8 +1,7 @@
 //! How each pair of controllers compares.
 
-use super::style::heading;
-use super::text::line;
 use crate::campaign::{ALL, Campaign};
+use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::results::{Measured, PairedComparison, Ratio};
 use crate::run::Findings;
 use crate::statistics::Interval;
@@ -11,64 +10,45 @@ use crate::statistics::Interval;
 const MOST_CHANNELS: usize = 6;
 
 /// How each pair of controllers compares.
-pub(super) fn pairs(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    if !findings.results.comparisons.is_empty() {
-        line(
-            &mut text,
-            &format!(
-                "\n{}: how many times smaller the RMS error of the first is, median [{} 95 %], and how often it wins",
-                heading("pair by pair"),
-                if campaign.sampling.replicates().is_some() {
-                    "t over replicates"
-                } else {
-                    "BCa"
-                }
-            ),
-        );
+pub(super) fn pairs(campaign: &Campaign, findings: &Findings) -> Section {
+    let interval = match campaign.sampling.replicates() {
+        Some(_) => "t over replicates",
+        None => "BCa",
+    };
+    let note = format!(
+        ": how many times smaller the RMS error of the first is, median [{interval} 95 %], and how often it wins"
+    );
+    let pairs = findings.results.comparisons.iter();
+    let of_all = pairs.filter(|own| *own.stratum == *ALL);
+    Section::explained("pair by pair", note, of_all.map(pair).collect())
+}
+
+fn pair(comparison: &PairedComparison) -> Block {
+    let (shown, left_out) = worth_showing(&comparison.ratios);
+    let mut blocks = vec![Block::Grid(Grid {
+        head: Vec::new(),
+        rows: shown.into_iter().map(ratio_cells).collect(),
+    })];
+    if left_out > 0 {
+        let rest = "between these two; comparison.csv has them all";
+        blocks.push(Block::Text(format!("{left_out} more channels lie {rest}")));
     }
-    let first = findings.results.comparisons.first();
-    let ratios = first.iter().flat_map(|first| &first.ratios);
-    let names = ratios.map(|ratio| ratio.name.len());
-    let width = names.max().unwrap_or(0).max(8);
-    let of_all = findings
-        .results
-        .comparisons
+    blocks.push(Block::Text(format!(
+        "failures  {}",
+        failures_text(comparison)
+    )));
+    let diverged = comparison
+        .ratios
         .iter()
-        .filter(|own| *own.stratum == *ALL);
-    for comparison in of_all {
-        line(
-            &mut text,
-            &format!("  {} against {}", comparison.a, comparison.b),
-        );
-        let (shown, left_out) = worth_showing(&comparison.ratios);
-        for ratio in shown {
-            line(
-                &mut text,
-                &format!("    {:<width$}  {}", ratio.name, ratio_text(ratio)),
-            );
-        }
-        if left_out > 0 {
-            let rest = "between these two; comparison.csv has them all";
-            line(
-                &mut text,
-                &format!("    {left_out} more channels lie {rest}"),
-            );
-        }
-        line(
-            &mut text,
-            &format!("    {:<width$}  {}", "failures", failures_text(comparison)),
-        );
-        let diverged = comparison.ratios.first().map(|ratio| ratio.diverged);
-        let diverged: u64 = diverged.iter().flatten().sum();
-        if diverged > 0 {
-            line(
-                &mut text,
-                &format!("    a diverged episode counts as infinitely bad: {diverged} pairs"),
-            );
-        }
+        .map(|ratio| ratio.diverged.iter().sum());
+    let diverged: u64 = diverged.max().unwrap_or(0);
+    if diverged > 0 {
+        blocks.push(Block::Text(format!(
+            "a diverged episode counts as infinitely bad: {diverged} pairs"
+        )));
     }
-    text
+    let title = format!("{} against {}", comparison.a, comparison.b);
+    Block::Folded(title, blocks)
 }
 
 /// The groups, and of many channels the one where the first controller gains least and the one where it gains most; and
@@ -87,21 +67,25 @@ fn worth_showing(ratios: &[Ratio]) -> (Vec<&Ratio>, usize) {
     (shown, left_out)
 }
 
-fn ratio_text(ratio: &Ratio) -> String {
-    let wins = ratio.win_rate.map_or(String::new(), |rate| {
-        format!("  wins {:>5.1} %", 100.0 * rate.value)
+fn ratio_cells(ratio: &Ratio) -> Vec<Cell> {
+    let name = Cell::text(&*ratio.name);
+    let Some(Measured { value, interval }) = ratio.known() else {
+        return vec![name, Cell::number("no episodes")];
+    };
+    // Of a few episodes every ratio may be the median.
+    let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
+    let interval = known.map_or("[-]".to_string(), |Interval { lower, upper }| {
+        format!("[{}, {}]", times(lower), times(upper))
     });
-    match ratio.known() {
-        Some(Measured { value, interval }) => {
-            // Of a few episodes every ratio may be the median.
-            let known = interval.filter(|own| own.lower.is_finite() || own.upper.is_finite());
-            let interval = known.map_or("[-]".to_string(), |Interval { lower, upper }| {
-                format!("[{}, {}]", times(lower), times(upper))
-            });
-            format!("{:>8} {interval:<19}{wins}", times(value))
-        }
-        None => "no episodes".to_string(),
-    }
+    let wins = ratio.win_rate.map_or(String::new(), |rate| {
+        format!("wins {:>5.1} %", 100.0 * rate.value)
+    });
+    vec![
+        name,
+        Cell::number(times(value)),
+        Cell::text(interval),
+        Cell::text(wins),
+    ]
 }
 
 fn times(log_ratio: f64) -> String {

@@ -2,74 +2,59 @@
 
 use super::drawn::{drawn, drawn_json};
 use super::effort::{lasting, seconds, steps};
-use super::text::line;
 use crate::campaign::lints::cautions;
 use crate::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
 use crate::controllers::GainSet;
+use crate::report::page::document::{Block, Document, Section};
+use crate::report::page::text::text;
 use serde_json::{Value, json};
 
 /// Columns of a wrapped line.
-const WIDTH: usize = 100;
+const WIDTH: usize = 96;
 
 /// What a campaign would do.
 pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!("{}: {}", campaign.path.display(), campaign.name),
-    );
-    line(
-        &mut text,
-        &format!(
-            "  {} episodes of {} over {} s in steps of {} s, seed {}",
+    let mut lead = vec![
+        format!(
+            "{} episodes of {} over {} s in steps of {} s, seed {}",
             campaign.episodes,
             campaign.agents_in_words(),
             campaign.time.shown_s(campaign.time.steps),
             campaign.time.step_s,
             campaign.seed
         ),
-    );
-    line(
-        &mut text,
-        &format!(
-            "  controllers {}: {:.2e} steps of {}, roughly {} on one core with 16 SIMD lanes",
+        format!(
+            "controllers {}: {:.2e} steps of {}, roughly {} on one core with 16 SIMD lanes",
             campaign.controllers.join(", "),
             steps(campaign),
             campaign.plural(),
             lasting(seconds(campaign))
         ),
-    );
-    for sentence in design(campaign) {
-        for part in wrapped(&sentence) {
-            line(&mut text, &part);
-        }
-    }
+    ];
+    lead.extend(design(campaign).iter().map(|sentence| wrapped(sentence)));
     for (index, name) in campaign.controllers.iter().enumerate() {
         let of_groups = gains.iter().map(|gains| &gains.controllers[index]);
         let channels =
             of_groups.flat_map(|own| own.groups.iter().map(move |channel| (own, channel)));
         for (group, (controller, channel)) in campaign.channel_groups().iter().zip(channels) {
-            let level = channel
-                .findings
-                .as_ref()
-                .and_then(|findings| findings.certificate.as_ref());
-            let level = level.map_or(String::new(), |certificate| {
+            let level = channel.certificate().map_or(String::new(), |certificate| {
                 format!(", certified rho {:.3}", certificate.rho)
             });
-            line(
-                &mut text,
-                &format!(
-                    "  gains of {name} on {}: {}{level}",
-                    group.name, controller.source
-                ),
-            );
+            lead.push(format!(
+                "gains of {name} on {}: {}{level}",
+                group.name, controller.source
+            ));
         }
     }
-    text.push_str(&drawn(campaign));
-    for caution in cautions(campaign) {
-        line(&mut text, &format!("note: {caution}"));
-    }
-    text
+    let cautions = cautions(campaign).into_iter();
+    let cautions = cautions.map(|caution| Block::Text(format!("note: {caution}")));
+    text(&Document {
+        title: campaign.path.display().to_string(),
+        subtitle: campaign.name.clone(),
+        lead,
+        sections: vec![drawn(campaign), Section::new("", cautions.collect())],
+        ..Document::default()
+    })
 }
 
 /// How the episodes are divided, drawn and ended, where that is not as usual.
@@ -168,25 +153,21 @@ fn whom(faults: &[&Fault]) -> &'static str {
     }
 }
 
-/// A sentence in lines of moderate length, all but the first further to the right: broken at commas, or where there are
-/// none between words.
-fn wrapped(sentence: &str) -> Vec<String> {
+/// A sentence in lines of moderate length: broken at commas, or where there are none between words.
+fn wrapped(sentence: &str) -> String {
     let parts = sentence.split_inclusive(", ").flat_map(|part| {
         let whole = part.chars().count() < WIDTH / 2;
         part.split_inclusive(if whole { ", " } else { " " })
     });
-    let mut lines = vec!["  ".to_string()];
+    let length = |text: &str| text.trim_end().chars().count();
+    let mut lines = vec![String::new()];
     for part in parts {
-        let length = |text: &str| text.trim_end().chars().count();
         match lines.last_mut() {
             Some(last) if last.chars().count() + length(part) <= WIDTH => last.push_str(part),
-            _ => lines.push(format!("    {part}")),
+            _ => lines.push(part.to_string()),
         }
     }
-    lines
-        .iter()
-        .map(|line| line.trim_end().to_string())
-        .collect()
+    lines.join("\n")
 }
 
 /// [`plan`] for programs.

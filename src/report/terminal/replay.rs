@@ -1,11 +1,11 @@
 //! How a replayed episode went, for people and for programs.
 
 use super::attenuation;
-use super::style::{bad, heading};
-use super::text::line;
 use crate::campaign::AgentGroup;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
+use crate::report::page::document::{Block, Cell, Document, Grid, Section};
+use crate::report::page::text::text;
 use crate::results::scores::{Status, status};
 use crate::run::replay::Replay;
 use crate::run::replay_files::ReplayFiles;
@@ -21,92 +21,90 @@ pub fn replay(
     (_, episode, controller): (&Path, u32, &str),
     files: &ReplayFiles,
 ) -> String {
-    let campaign = &replay.campaign;
-    let mut text = String::new();
-    let names = |group: &AgentGroup| -> Vec<String> {
-        let names = group.channels().iter().enumerate();
-        names
-            .map(|(channel, name)| format!("{name}, {}", group.unit(channel)))
-            .collect()
+    let time = replay.campaign.time;
+    let settle_s = f64::from(time.settle_step) * time.step_s;
+    let agents = 0..replay.outcomes.len();
+    let stand_in = replay.stand_in.iter().map(|reason| {
+        Block::Text(format!(
+            "simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
+        ))
+    });
+    let written = Block::Text(format!(
+        "written to {} ({} samples), the figures to {} and {}",
+        files.table.display(),
+        replay.snapshots.len(),
+        files.page.display(),
+        files.picture.display()
+    ));
+    let explanation = attenuation::explanation(&replay.attenuations).into_iter();
+    text(&Document {
+        title: format!("episode {episode} under {controller}"),
+        subtitle: format!("errors from {settle_s} s on"),
+        sections: vec![
+            Section::new("", agents.map(|agent| of_agent(replay, agent)).collect()),
+            Section::new("", explanation.chain(stand_in).chain([written]).collect()),
+        ],
+        ..Document::default()
+    })
+}
+
+/// The errors of an agent, and how it ended.
+fn of_agent(replay: &Replay, agent: usize) -> Block {
+    let outcome = &replay.outcomes[agent];
+    let (group, _) = replay.campaign.member(agent);
+    let head = ["channel", "RMS", "largest"].map(String::from).into_iter();
+    let mut grid = Grid {
+        head: head
+            .chain(attenuation::heads(&replay.attenuations))
+            .collect(),
+        rows: Vec::new(),
     };
-    let widths = campaign.groups().iter().flat_map(names);
-    // At least as wide as its heading.
-    let width = widths.map(|name| name.len()).max().unwrap_or(0).max(10);
-    let settle_s = f64::from(campaign.time.settle_step) * campaign.time.step_s;
-    let title = heading(&format!("episode {episode} under {controller}"));
-    line(&mut text, &format!("{title}: errors from {settle_s} s on"));
-    line(
-        &mut text,
-        &format!(
-            "    {:<width$} {:>10}  {:>10}{}",
-            "channel",
-            "RMS",
-            "largest",
-            attenuation::heading(&replay.attenuations)
-        ),
-    );
-    for (agent, outcome) in replay.outcomes.iter().enumerate() {
-        let ending = ending(replay, agent, outcome);
-        let (group, _) = campaign.member(agent);
-        let of_group = match &*group.name {
-            "" => String::new(),
-            name => format!(" ({name})"),
-        };
-        line(&mut text, &format!("  agent {agent}{of_group}{ending}"));
-        for (channel, (name, metrics)) in names(group).iter().zip(&outcome.channels).enumerate() {
-            line(
-                &mut text,
-                &format!(
-                    "    {name:<width$} {:>10}  {:>10}{}",
-                    number(metrics.rmse),
-                    number(metrics.max_abs),
-                    attenuation::of_channel(&replay.attenuations, agent, channel)
-                ),
-            );
-        }
+    for (channel, (name, metrics)) in group.channels().iter().zip(&outcome.channels).enumerate() {
+        let mut cells = vec![
+            Cell::Text(format!("{name}, {}", group.unit(channel))),
+            Cell::number(number(metrics.rmse)),
+            Cell::number(number(metrics.max_abs)),
+        ];
+        cells.extend(attenuation::of_channel(
+            &replay.attenuations,
+            agent,
+            channel,
+        ));
+        grid.rows.push(cells);
     }
-    text.push_str(&attenuation::explanation(&replay.attenuations));
-    if let Some(reason) = &replay.stand_in {
-        line(
-            &mut text,
-            &format!(
-                "simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
-            ),
-        );
-    }
-    line(
-        &mut text,
-        &format!(
-            "written to {} ({} samples), the figures to {} and {}",
-            files.table.display(),
-            replay.snapshots.len(),
-            files.page.display(),
-            files.picture.display()
-        ),
-    );
-    text
+    let title = match &*group.name {
+        "" => format!("agent {agent}"),
+        name => format!("agent {agent} ({name})"),
+    };
+    let ending = ending(replay, group, outcome).map(|ending| {
+        Block::Grid(Grid {
+            head: Vec::new(),
+            rows: vec![vec![Cell::Verdict(false, ending)]],
+        })
+    });
+    Block::Folded(
+        title,
+        ending.into_iter().chain([Block::Grid(grid)]).collect(),
+    )
 }
 
 /// How an agent ended, if it failed, and when.
-fn ending(replay: &Replay, agent: usize, outcome: &AgentOutcome) -> String {
-    match status(replay.campaign.member(agent).0, outcome) {
-        Status::Ok => String::new(),
-        failed => {
-            let limit = match (failed, outcome.failed_step) {
-                (Status::Exceeded, Some(_)) => " max_error",
-                (Status::Exceeded, None) => " max_rmse",
-                _ => "",
-            };
-            let time = failed_at_s(replay, outcome);
-            // What diverges has failed before it left the numbers, if there is a limit.
-            let first = match failed {
-                Status::Diverged => ", failed",
-                Status::Ok | Status::Exceeded => "",
-            };
-            let at = time.map_or(String::new(), |time| format!("{first} at {time:.3} s"));
-            format!("  {}{limit}{at}", bad(failed.word()))
-        }
-    }
+fn ending(replay: &Replay, group: &AgentGroup, outcome: &AgentOutcome) -> Option<String> {
+    let failed = status(group, outcome);
+    let limit = match (failed, outcome.failed_step) {
+        (Status::Ok, _) => return None,
+        (Status::Exceeded, Some(_)) => " max_error",
+        (Status::Exceeded, None) => " max_rmse",
+        (Status::Diverged, _) => "",
+    };
+    // What diverges has failed before it left the numbers, if there is a limit.
+    let first = match failed {
+        Status::Diverged => ", failed",
+        Status::Ok | Status::Exceeded => "",
+    };
+    let time = failed_at_s(replay, outcome);
+    let at = time.map_or(String::new(), |time| format!("{first} at {time:.3} s"));
+    Some(format!("{}{limit}{at}", failed.word()))
 }
 
 /// When an agent broke max_error or left the numbers, s.

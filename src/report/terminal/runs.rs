@@ -1,6 +1,7 @@
 //! How many episodes a claim about a failure rate needs.
 
-use super::text::line;
+use crate::report::page::document::{Block, Cell, Document, Grid, Section};
+use crate::report::page::text::text;
 use crate::statistics::{power, runs_needed};
 use serde_json::{Value, json};
 
@@ -23,41 +24,42 @@ fn rows(failure_rate: f64, confidence: f64, most_failures: u64) -> Vec<Row> {
 
 /// The episodes that a claim needs, with none, one, .. failures.
 pub fn runs(failure_rate: f64, confidence: f64, most_failures: u64) -> String {
-    let mut text = String::new();
-    line(
-        &mut text,
-        &format!(
-            "to be {} sure that fewer than {} of all episodes fail",
-            percent(confidence),
-            percent(failure_rate)
-        ),
-    );
-    let mut head = format!("  {:>16}  {:>10}", "failures allowed", "episodes");
-    for share in TRUE_SHARES {
-        let rate = format!("at {:.3e}", share * failure_rate);
-        head.push_str(&format!("  {rate:>13}"));
-    }
-    line(&mut text, &head);
+    let head = ["failures allowed", "episodes"]
+        .map(String::from)
+        .into_iter();
+    let rates = TRUE_SHARES.map(|share| format!("at {:.3e}", share * failure_rate));
     let rows = rows(failure_rate, confidence, most_failures);
+    let cells = |(failures, n, chances): Row| {
+        let chances = chances.map(|chance| format!("{:.1}%", 100.0 * chance));
+        let counts = [failures.to_string(), n.to_string()].into_iter();
+        counts.chain(chances).map(Cell::Number).collect()
+    };
+    let mut blocks = Vec::new();
     if rows.is_empty() {
-        line(
-            &mut text,
-            "  no number of episodes that can be counted proves that",
-        );
+        blocks.push(Block::text(
+            "no number of episodes that can be counted proves that",
+        ));
+    } else {
+        blocks.push(Block::Grid(Grid {
+            head: head.chain(rates).collect(),
+            rows: rows.into_iter().map(cells).collect(),
+        }));
     }
-    for (failures, n, chances) in rows {
-        let mut cells = format!("  {failures:>16}  {n:>10}");
-        for chance in chances {
-            cells.push_str(&format!("  {:>12.1}%", 100.0 * chance));
-        }
-        line(&mut text, &cells);
+    for sentence in [
+        "The last columns: the chance that a run of so many episodes succeeds, if the true failure rate is the one above the column.",
+        "Decide on a row before the run; the number of failures that you then see does not change it.",
+    ] {
+        blocks.push(Block::text(sentence));
     }
-    line(
-        &mut text,
-        "The last columns: the chance that a run of so many episodes succeeds, if the true failure rate is the one above the column.\n\
-         Decide on a row before the run; the number of failures that you then see does not change it.",
+    let title = format!(
+        "to be {} sure that fewer than {} of all episodes fail",
+        percent(confidence),
+        percent(failure_rate)
     );
-    text
+    text(&Document {
+        sections: vec![Section::new(title, blocks)],
+        ..Document::default()
+    })
 }
 
 /// A share between 0 and 1 in percent, with as many digits as it takes not to say none or all.

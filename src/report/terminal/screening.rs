@@ -1,27 +1,18 @@
 //! How often each controller fails in each stratum, and what hurts it most.
 
-use super::style::heading;
-use super::text::{kind_of_interval, line};
 use crate::campaign::Campaign;
-use crate::results::FailureRate;
+use crate::report::page::document::{Block, Cell, Grid, Section};
+use crate::results::{FailureRate, RateMethod};
 use crate::run::Findings;
 
 /// The strata of a run; nothing of a campaign without.
-pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
-    let mut text = String::new();
-    let strata = campaign.strata.all();
-    if strata.is_empty() {
-        return text;
-    }
-    let widths = strata.iter().map(|stratum| stratum.name.chars().count());
-    let width = widths.max().unwrap_or(0).max(8);
-    let title = format!("failure rates by stratum [{}]", kind_of_interval(campaign));
-    let mut head = format!("\n{}\n  {:<width$} {:>6}", heading(&title), "stratum", "n");
-    for controller in &campaign.controllers {
-        head.push_str(&format!("  {controller:<24}"));
-    }
-    line(&mut text, head.trim_end());
-    for stratum in strata {
+pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> [Section; 2] {
+    let head = ["stratum", "n"].into_iter().map(String::from);
+    let mut grid = Grid {
+        head: head.chain(campaign.controllers.iter().cloned()).collect(),
+        rows: Vec::new(),
+    };
+    for stratum in campaign.strata.all() {
         let of_stratum: Vec<&FailureRate> = campaign
             .controllers
             .iter()
@@ -33,21 +24,21 @@ pub(super) fn strata(campaign: &Campaign, findings: &Findings) -> String {
             })
             .collect();
         let n = of_stratum.first().map_or(0, |rate| rate.n);
-        let mut cells = format!("  {:<width$} {n:>6}", stratum.name);
-        for rate in of_stratum {
-            cells.push_str(&format!("  {:<24}", rate_text(rate)));
-        }
-        line(&mut text, cells.trim_end());
+        let mut cells = vec![Cell::text(&*stratum.name), Cell::number(n.to_string())];
+        cells.extend(
+            of_stratum
+                .into_iter()
+                .map(|rate| Cell::text(rate_text(rate))),
+        );
+        grid.rows.push(cells);
     }
-    let sentences = &findings.manifest.harm;
-    if !sentences.is_empty() {
-        let title = heading("which stratum hurts most");
-        line(&mut text, &format!("\n{title}, change [95 %]"));
-    }
-    for sentence in sentences {
-        line(&mut text, &format!("  {sentence}"));
-    }
-    text
+    let kind = RateMethod::of(campaign).short();
+    let title = format!("failure rates by stratum [{kind}]");
+    let sentences = findings.results.harm.iter().map(Block::text).collect();
+    [
+        Section::new(title, vec![Block::Grid(grid)]),
+        Section::explained("which stratum hurts most", ", change [95 %]", sentences),
+    ]
 }
 
 fn rate_text(rate: &FailureRate) -> String {

@@ -1,6 +1,7 @@
 //! Where files that a command wrote are, and what the paper's claims became.
 
-use super::text::line;
+use crate::report::page::document::{Block, Cell, Document, Grid, Section};
+use crate::report::page::text::text;
 use crate::report::paper::Claim;
 use crate::run::error::REPORTS;
 use std::path::Path;
@@ -12,19 +13,25 @@ pub fn report(dir: &Path) -> String {
 
 /// What became of the paper's claims, one a line, and where the figures are.
 pub fn paper(claims: &[Claim], dir: &Path) -> String {
-    let mut text = String::new();
-    for claim in claims {
+    let rows = claims.iter().map(|claim| {
         let holds = match claim.holds {
-            Some(true) => "holds",
-            Some(false) => "FAILS",
-            None => "open ",
+            Some(true) => Cell::Verdict(true, "holds".into()),
+            Some(false) => Cell::Verdict(false, "FAILS".into()),
+            None => Cell::text("open"),
         };
-        let (place, said, found) = (claim.place, claim.claim, &claim.measured);
-        line(&mut text, &format!("{holds}  {place}  {said}: {found}"));
-    }
-    line(
-        &mut text,
-        &format!("the figures: {}", dir.join("README.md").display()),
-    );
-    text
+        let said = format!("{}  {}: {}", claim.place, claim.claim, claim.measured);
+        vec![holds, Cell::text(said)]
+    });
+    let grid = Grid {
+        head: Vec::new(),
+        rows: rows.collect(),
+    };
+    let figures = format!("the figures: {}", dir.join("README.md").display());
+    text(&Document {
+        sections: vec![Section::new(
+            "",
+            vec![Block::Grid(grid), Block::Text(figures)],
+        )],
+        ..Document::default()
+    })
 }

@@ -173,19 +173,19 @@ fn check_sums_up_strata_and_tells_each_fault_with_its_target_in_one_place() {
     let of = |title: usize| -> Vec<&str> {
         let own = lines[title + 1..]
             .iter()
-            .take_while(|line| line.starts_with("      "));
+            .take_while(|line| line.starts_with("    "));
         own.map(|line| line.split_whitespace().next().unwrap())
             .collect()
     };
-    let stuck = title("    fault[3] actuator stuck, in ");
+    let stuck = title("  fault[3] actuator stuck, in ");
     assert!(lines[stuck].contains(" of 600 agents (") && lines[stuck].ends_with(" %)"));
     assert_eq!(of(stuck), ["onset_s", "duration_s"]);
     assert_eq!(
-        of(title("    fault[10] sensor bias, in ")),
+        of(title("  fault[10] sensor bias, in ")),
         ["onset_s", "magnitude"]
     );
     assert_eq!(
-        of(title("    disturbance[0] sine")),
+        of(title("  disturbance[0] sine")),
         ["amplitude", "frequency_rad_s", "phase_rad"]
     );
     assert!(

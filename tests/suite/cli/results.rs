@@ -51,7 +51,7 @@ fn synthesize_shows_gains_poles_margins_and_certificate() {
         "poles of A + L C",
         "margins  Ms",
         "certified attenuation rho",
-        "check   ok",
+        "check  ok",
     ] {
         assert!(text.contains(word), "{word:?} is missing from: {text}");
     }
@@ -330,7 +330,7 @@ fn a_replay_writes_its_trajectories_and_shows_the_numbers_of_the_run() {
     let rmse: f64 = row.unwrap()["rmse"].parse().unwrap();
     let shown = text
         .lines()
-        .find(|line| line.starts_with("    x, m "))
+        .find(|line| line.starts_with("  x, m "))
         .unwrap();
     assert!(
         (0.1..1.0).contains(&rmse) && shown.contains(&format!("{rmse:.4}")),
