@@ -7,14 +7,14 @@
 
 use super::agent::{Agent, Coupling, GroupParameters};
 use super::controller::Law;
-use super::controller::kinds::{Controller, Family};
+use super::controller::kinds::{Controller, Family, with_family};
 use super::controller::observer_feedback::{FTC_STATES, PID_STATES};
 use super::controller::true_state::TRUE_STATES;
 use super::inputs::{ChannelInputs, LaneBlock, Selection, changes};
 use super::lanes::{Lane, Real};
 use super::metric::{ChannelOutcome, Limits};
 use super::plant::Plant;
-use super::plant::kinds::AnyPlant;
+use super::plant::kinds::{AnyPlant, with_plant};
 use super::sample::{ChannelSample, ObserverState};
 use super::subsystem::{Subsystem, parts};
 use super::team::{Advance, Ending, Show, TeamState};
@@ -121,16 +121,9 @@ impl<R: Real> Model<R> {
             snapshots: Vec::new(),
         };
         for part in &self.parts {
-            match &controller.family {
-                Family::FaultTolerant(laws) => running.part::<L, _, FTC_STATES>(part, laws),
-                Family::Pid(laws) => running.part::<L, _, PID_STATES>(part, laws),
-                // `Controller::true_state` exists in double precision only, so no other precision needs this loop.
-                Family::TrueState(laws) => {
-                    if R::IS_REFERENCE {
-                        running.part::<L, _, TRUE_STATES>(part, laws);
-                    }
-                }
-            }
+            with_family!(R, &controller.family, |laws, NS| {
+                running.part::<L, _, NS>(part, laws);
+            });
         }
         (running.outcomes, running.snapshots)
     }
@@ -152,14 +145,9 @@ impl<R: Real> EpisodeLoop<'_, R> {
         L: Lane<Real = R>,
         C: Law<L, NS>,
     {
-        match part.plant {
-            AnyPlant::Axis(plant) => self.subsystem::<L, _, _, 1, NS, 0>(plant, part, laws),
-            AnyPlant::Translation(plant) => self.subsystem::<L, _, _, 3, NS, 0>(plant, part, laws),
-            AnyPlant::Attitude(plant) => self.subsystem::<L, _, _, 3, NS, 0>(plant, part, laws),
-            AnyPlant::Thrust(plant) => self.subsystem::<L, _, _, 6, NS, 4>(plant, part, laws),
-            AnyPlant::FreeLeg(plant) => self.subsystem::<L, _, _, 6, NS, 0>(plant, part, laws),
-            AnyPlant::CutLeg(plant) => self.subsystem::<L, _, _, 6, NS, 0>(plant, part, laws),
-        }
+        with_plant!(part.plant, |plant, NC, NX| {
+            self.subsystem::<L, _, _, NC, NS, NX>(plant, part, laws);
+        });
     }
 
     fn subsystem<L, P, C, const NC: usize, const NS: usize, const NX: usize>(

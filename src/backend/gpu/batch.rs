@@ -12,7 +12,7 @@ use super::uniforms::setting;
 use crate::backend::EpisodeResult;
 use crate::campaign::AgentGroup;
 use crate::draw::{Episode, draw};
-use crate::model::controller::kinds::{Controller, Family};
+use crate::model::controller::kinds::Controller;
 use crate::model::episode::{AgentOutcome, Model};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
@@ -78,8 +78,7 @@ impl<'g> GpuSimulator<'g> {
         let mut most_steps = u32::MAX;
         for (controller, gains) in controllers.iter().enumerate() {
             for (number, part) in model.parts.iter().enumerate() {
-                let ftc = matches!(gains.family, Family::FaultTolerant(_));
-                let shape = shape(gpu, group, part, ftc)?;
+                let shape = shape(gpu, group, part, gains.is_fault_tolerant())?;
                 most_steps = most_steps.min(shape.most_steps(gpu)?);
                 // The axes mostly share their shaders, and the PIDs do.
                 let known = pipelines.iter().find(|pipeline| pipeline.shape == shape);

@@ -38,6 +38,11 @@ impl<R: Real> Controller<R> {
         }
     }
 
+    /// Whether it is a fault-tolerant one: what the text of its shaders depends on.
+    pub(crate) fn is_fault_tolerant(&self) -> bool {
+        matches!(self.family, Family::FaultTolerant(_))
+    }
+
     /// The gains of the observers, if it has any.
     pub(crate) fn observer_gains(&self) -> &[ChannelGains<R>] {
         match &self.family {
@@ -58,3 +63,27 @@ impl Controller<f64> {
         }
     }
 }
+
+/// Evaluates an expression with the laws of a family of their own type, and a constant for the states of a channel.
+macro_rules! with_family {
+    ($real:ty, $family:expr, |$laws:ident, $states:ident| $body:expr) => {
+        match $family {
+            Family::FaultTolerant($laws) => {
+                const $states: usize = FTC_STATES;
+                $body
+            }
+            Family::Pid($laws) => {
+                const $states: usize = PID_STATES;
+                $body
+            }
+            // `Controller::true_state` exists in double precision only, so no other precision needs this loop.
+            Family::TrueState($laws) => {
+                if <$real>::IS_REFERENCE {
+                    const $states: usize = TRUE_STATES;
+                    $body
+                }
+            }
+        }
+    };
+}
+pub(crate) use with_family;

@@ -113,3 +113,25 @@ impl<R> AnyPlant<R> {
         }
     }
 }
+
+/// Evaluates an expression with a plant of its own type, and with constants for its channels and for the states that it
+/// has beside theirs.
+macro_rules! with_plant {
+    ($any:expr, |$plant:ident, $channels:ident, $states:ident| $body:expr) => {
+        with_plant!(@rows $any, $plant, $channels, $states, $body,
+            Axis 1 0, Translation 3 0, Attitude 3 0, Thrust 6 4, FreeLeg 6 0, CutLeg 6 0)
+    };
+    (
+        @rows $any:expr, $plant:ident, $channels:ident, $states:ident, $body:expr,
+        $($row:ident $count:literal $own:literal),*
+    ) => {
+        match $any {
+            $(AnyPlant::$row($plant) => {
+                const $channels: usize = $count;
+                const $states: usize = $own;
+                $body
+            })*
+        }
+    };
+}
+pub(crate) use with_plant;
