@@ -13,8 +13,13 @@ pub const PID: &str = "pid";
 /// Name of the PID whose observer distrusts the faulty velocity channel.
 pub const PID_TUNED: &str = "pid-tuned";
 
+/// Name of the PID with a triple pole.
+pub const PID_PLACED: &str = "pid-placed";
+
 /// The controllers that need no file.
-pub const BUILT_IN: [&str; 3] = [FTC, PID, PID_TUNED];
+pub const BUILT_IN: [&str; 4] = [FTC, PID, PID_TUNED, PID_PLACED];
+/// Those that a campaign compares if it names none.
+pub const COMPARED: [&str; 3] = [FTC, PID, PID_TUNED];
 
 /// What all agents of a campaign have in common.
 #[derive(Debug, Clone)]

@@ -225,8 +225,28 @@ pub struct GainSource {
     pub preset: String,
     /// File that replaces the synthesized gains.
     pub gains: Option<PathBuf>,
+    /// How the controller "pid-placed" is placed.
+    pub placed: PidPlaced,
     /// Additional controllers.
     pub named: Vec<NamedGains>,
+}
+
+/// How the controller "pid-placed" is placed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PidPlaced {
+    /// The poles of its error.
+    pub poles: PlacedPoles,
+    /// The poles of its observer, rad/s.
+    pub observer_rad_s: f64,
+}
+
+/// Where the poles of "pid-placed" are.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlacedPoles {
+    /// At this, rad/s.
+    At(f64),
+    /// Where its delay margin is that of this controller, which is synthesized; channel group by channel group.
+    DelayMarginOf(String),
 }
 
 /// An additional controller from a file.

@@ -24,7 +24,11 @@ pub fn cautions(campaign: &Campaign) -> Vec<String> {
         };
         of_group(group).map(move |caution| prefix.clone() + &caution)
     });
-    unprovable.chain(of_groups).collect()
+    repeated(campaign)
+        .into_iter()
+        .chain(unprovable)
+        .chain(of_groups)
+        .collect()
 }
 
 /// What is said of a group of agents, each beginning with a key.
@@ -33,6 +37,19 @@ fn of_group(group: &AgentGroup) -> impl Iterator<Item = String> {
     let unfinished =
         faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
     unreached(group).into_iter().chain(unfinished)
+}
+
+/// Episodes that are all the same.
+fn repeated(campaign: &Campaign) -> Option<String> {
+    let episodes = campaign.episodes;
+    let distinct = campaign.strata.all().len().max(1);
+    (!campaign.is_random() && episodes as usize > distinct).then(|| {
+        let same = match distinct {
+            1 => "one and the same".to_string(),
+            _ => format!("one and the same in each of the {distinct} strata"),
+        };
+        format!("nothing is random: the {episodes} episodes are {same}; {distinct} would say as much, and there are no intervals")
+    })
 }
 
 /// A requirement that does not hold even if nothing fails.

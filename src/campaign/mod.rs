@@ -1,5 +1,6 @@
 //! A campaign: everything that decides the result of a run, checked, in SI units, with nothing optional left.
 
+mod chance;
 mod check;
 mod common;
 pub mod distribution;
@@ -19,13 +20,14 @@ mod time;
 mod validate;
 mod validated;
 
-pub use common::{BUILT_IN, Common, FTC, PID, PID_TUNED, Requirement};
+pub use common::{BUILT_IN, COMPARED, Common, FTC, PID, PID_PLACED, PID_TUNED, Requirement};
 pub use distribution::Distribution;
 pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
 pub use file::{CouplingCoordinates, IntegralKind, Link, ObserverStart};
 pub use group::{
-    AgentGroup, ChannelsOfCampaign, Control, GainSource, GroupParts, Initial, NamedGains, Verdict,
+    AgentGroup, ChannelsOfCampaign, Control, GainSource, GroupParts, Initial, NamedGains,
+    PidPlaced, PlacedPoles, Verdict,
 };
 pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
 pub use overlay::{Setting, SettingError};

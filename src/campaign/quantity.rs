@@ -21,6 +21,12 @@ impl RandomQuantity {
         &self.distributions[agent * self.channels + channel]
     }
 
+    /// Whether some of its values are drawn.
+    #[must_use]
+    pub fn varies(&self) -> bool {
+        self.distributions.iter().any(|own| !own.is_constant())
+    }
+
     /// Whether it is zero in every episode.
     #[must_use]
     pub fn is_zero(&self) -> bool {

@@ -248,7 +248,7 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     drop(shown);
     let gains = gains?;
     if arguments.json {
-        print_json(&terminal::plan_json(&campaign))?;
+        print_json(&terminal::plan_json(&campaign, &gains))?;
     } else if !arguments.quiet {
         print(&terminal::plan(&campaign, &gains))?;
     }

@@ -5,9 +5,12 @@ use super::file::{self, GainsFile};
 use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
 use super::step::check_step;
 use crate::agent::ChannelGroup;
-use crate::campaign::{AgentGroup, BUILT_IN, Campaign, PID, PID_TUNED};
+use crate::campaign::{
+    AgentGroup, BUILT_IN, Campaign, PID, PID_PLACED, PID_TUNED, PidPlaced, PlacedPoles,
+};
 use crate::synthesis::{
-    ChannelSynthesis, ControllerGains, LoopAnalysis, SynthesisError, synthesize,
+    ChannelSynthesis, ControllerGains, LoopAnalysis, SynthesisError, placed_gains,
+    poles_for_delay_margin, synthesize, verify,
 };
 use std::path::Path;
 
@@ -107,10 +110,7 @@ fn failed(group: &AgentGroup, channels: &ChannelGroup, source: SynthesisError) -
 
 /// The gains of a built-in controller in a synthesis, and what was found about them.
 #[must_use]
-pub fn built_in<'a>(
-    synthesis: &'a ChannelSynthesis,
-    name: &str,
-) -> (&'a ControllerGains, Findings) {
+pub fn built_in(synthesis: &ChannelSynthesis, name: &str) -> (ControllerGains, Findings) {
     let analysis = &synthesis.analysis;
     let bare = |analysis: &LoopAnalysis| Findings {
         analysis: analysis.clone(),
@@ -119,8 +119,8 @@ pub fn built_in<'a>(
         solver: Vec::new(),
     };
     match name {
-        PID => (&synthesis.pid, bare(&analysis.pid)),
-        PID_TUNED => (&synthesis.pid_tuned, bare(&analysis.pid_tuned)),
+        PID => (synthesis.pid.clone(), bare(&analysis.pid)),
+        PID_TUNED => (synthesis.pid_tuned.clone(), bare(&analysis.pid_tuned)),
         _ => {
             let findings = Findings {
                 analysis: analysis.ftc.clone(),
@@ -128,9 +128,34 @@ pub fn built_in<'a>(
                 checks: synthesis.checks.clone(),
                 solver: synthesis.solver.clone(),
             };
-            (&synthesis.ftc, findings)
+            (synthesis.ftc.clone(), findings)
         }
     }
+}
+
+/// The gains of "pid-placed" on a channel group, and what was found about them.
+fn placed(
+    synthesis: &ChannelSynthesis,
+    placed: &PidPlaced,
+) -> Result<(ControllerGains, Findings), SynthesisError> {
+    let design = &synthesis.design;
+    let poles_rad_s = match &placed.poles {
+        PlacedPoles::At(poles_rad_s) => *poles_rad_s,
+        PlacedPoles::DelayMarginOf(name) => {
+            let (_, of) = built_in(synthesis, name);
+            let margin_ms = of.analysis.margins.delay_margin_ms;
+            poles_for_delay_margin(design, margin_ms, placed.observer_rad_s)?
+        }
+    };
+    let gains = placed_gains(poles_rad_s, placed.observer_rad_s);
+    let verified = verify(design, &gains)?;
+    let findings = Findings {
+        analysis: verified.analysis,
+        certificate: None,
+        checks: verified.checks,
+        solver: Vec::new(),
+    };
+    Ok((gains, findings))
 }
 
 fn from_synthesis(
@@ -139,11 +164,15 @@ fn from_synthesis(
     synthesized: &[ChannelSynthesis],
 ) -> Result<SimulatedController, GainsError> {
     let of_channels = |(channels, synthesis): (ChannelGroup, &ChannelSynthesis)| {
-        let (gains, findings) = built_in(synthesis, name);
-        let loop_gains = integrable(&synthesis.design, gains);
+        let failed = |source| failed(group, &channels, source);
+        let (gains, findings) = match name {
+            PID_PLACED => placed(synthesis, &group.synthesis.placed).map_err(failed)?,
+            _ => built_in(synthesis, name),
+        };
+        let loop_gains = integrable(&synthesis.design, &gains);
         Ok::<_, GainsError>(ChannelController {
-            gains: gains.clone(),
-            loop_gains: loop_gains.map_err(|source| failed(group, &channels, source))?,
+            gains,
+            loop_gains: loop_gains.map_err(failed)?,
             findings: Some(findings),
         })
     };

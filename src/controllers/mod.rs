@@ -1,12 +1,14 @@
 //! From a campaign to the gains of its controllers: synthesized, or from a file and verified the same way; and
 //! gains.json.
 
+mod cautions;
 mod error;
 mod file;
 mod gain_set;
 mod load;
 mod step;
 
+pub use cautions::cautions;
 pub use error::GainsError;
 pub use file::{ControllerFile, GainsFile, GroupGains};
 pub use gain_set::{ChannelController, Findings, GainSet, SimulatedController};

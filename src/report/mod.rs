@@ -23,7 +23,7 @@ use page::document::Document;
 use page::{html, markdown};
 use problems::{shortcoming, unmet};
 use run_data::RunData;
-use section::{conditions, errors, failures, gains, provenance, strata};
+use section::{conditions, errors, failures, fairness, gains, provenance, strata};
 use std::path::Path;
 
 /// Writes `report.html` and `report.md` of the run in a directory.
@@ -45,6 +45,7 @@ fn document(data: &RunData) -> Document {
     let campaign = &data.campaign;
     let wrong = [shortcoming(manifest, &data.dir), unmet(manifest)];
     let sections = [
+        fairness::section(data),
         Some(failures::section(data)),
         Some(errors::pairs(data)),
         Some(errors::distributions(data)),

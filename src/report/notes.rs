@@ -12,7 +12,10 @@ pub fn caveats(campaign: &Campaign, manifest: &Manifest) -> Vec<String> {
     let design = replicates.map(|replicates| of_design(campaign, replicates));
     let stopped = manifest.stopped.as_ref();
     let stop = stopped.map(|stopped| of_stop(stopped, manifest.episodes_asked));
-    design.into_iter().chain(stop).collect()
+    let repeated = (!campaign.is_random() && manifest.episodes > 1).then(|| {
+        "nothing is random: the episodes are all the same, so that there are no intervals and no tests".to_string()
+    });
+    repeated.into_iter().chain(design).chain(stop).collect()
 }
 
 fn of_design(campaign: &Campaign, replicates: u32) -> String {

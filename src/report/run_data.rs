@@ -40,6 +40,8 @@ pub(crate) struct RunData {
     pub(crate) channels: TableReader,
     pub(crate) summary: TableReader,
     pub(crate) comparison: TableReader,
+    /// On what terms the controllers are compared.
+    pub(crate) fairness: TableReader,
     pub(crate) screening: TableReader,
     pub(crate) ranking: TableReader,
     pub(crate) worst: TableReader,
@@ -67,6 +69,7 @@ impl RunData {
             channels: needed("channels", |name| RMSE_COLUMNS.contains(&name))?,
             summary: needed("summary", |_| true)?,
             comparison: all("comparison")?,
+            fairness: all("fairness")?,
             screening: all("screening")?,
             ranking: all("ranking")?,
             worst: all("worst")?,

@@ -1,5 +1,6 @@
 //! Every statistic of a run at once.
 
+use super::fairness::{Terms, terms, unlike};
 use super::paired::{PairedComparison, compare};
 use super::requirements::{RequirementResult, requirements};
 use super::scores::Scores;
@@ -9,6 +10,7 @@ use super::summary::{FailureRate, MetricQuantiles, failure_rates, summarise};
 use super::verdict::verdict;
 use super::worst_fault::harm;
 use crate::campaign::Campaign;
+use crate::controllers::GainSet;
 use rayon::ThreadPool;
 use serde::{Serialize, Serializer};
 
@@ -17,8 +19,13 @@ use serde::{Serialize, Serializer};
 pub struct Results {
     /// Who does better, a sentence for each opponent of the first controller.
     pub verdict: Vec<String>,
+    /// In what the first controller and each of the others are unlike, in sentences.
+    pub unlike: Vec<String>,
     /// What the strata do to each controller, in sentences.
     pub harm: Vec<String>,
+    /// On what terms the controllers are compared.
+    #[serde(rename = "fairness")]
+    pub terms: Vec<Terms>,
     /// How often every controller failed, and each group of agents alone where there are several.
     pub failures: Vec<FailureRate>,
     /// How large the errors of every controller were.
@@ -42,13 +49,16 @@ pub struct Results {
 impl Results {
     /// The statistics of a run's scores; the permutations of the sensitivity analysis take the threads of the pool.
     #[must_use]
-    pub fn of(campaign: &Campaign, scores: &Scores, pool: &ThreadPool) -> Self {
+    pub fn of(campaign: &Campaign, gains: &[GainSet], scores: &Scores, pool: &ThreadPool) -> Self {
+        let terms = terms(campaign, gains, scores);
         let summary = summarise(campaign, scores);
         let comparisons = compare(campaign, scores);
         let screenings = screen(campaign, scores);
         Self {
             verdict: verdict(&summary, &comparisons),
+            unlike: unlike(&terms),
             harm: harm(&screenings),
+            terms,
             failures: failure_rates(campaign, scores),
             summary,
             comparisons,

@@ -1,5 +1,6 @@
 //! The summary, the comparisons and the screening as tables.
 
+use super::fairness::Terms;
 use super::paired::{Measured, PairedComparison};
 use super::replicates::Replicated;
 use super::screening::Screening;
@@ -7,6 +8,7 @@ use super::summary::{MetricQuantiles, RateMethod};
 use super::table::{Row, Table};
 use crate::campaign::Campaign;
 use crate::statistics::{Estimate, Interval};
+use crate::synthesis::Margins;
 
 /// The summary as a table. Columns of confidence sequences and of replicates are there where the campaign has them.
 #[must_use]
@@ -101,6 +103,26 @@ pub fn comparison_table(campaign: &Campaign, comparisons: &[PairedComparison]) -
                 .count(|| "only_b_diverged".into(), only_b)
                 .count(|| "both_diverged".into(), both);
         }
+    }
+    table
+}
+
+/// The terms of every controller as a table.
+#[must_use]
+pub fn fairness_table(terms: &[Terms]) -> Table {
+    let mut table = Table::default();
+    for own in terms {
+        let margin = |pick: fn(&Margins) -> f64| own.margins.as_ref().map(pick);
+        let mut row = table.row();
+        row.name(|| "controller".into(), own.controller.as_str().into())
+            .name(|| "group".into(), own.group.clone())
+            .real_if("crossover_rad_s", margin(|own| own.crossover_rad_s))
+            .real_if("phase_margin_deg", margin(|own| own.phase_margin_deg))
+            .real_if("delay_margin_ms", margin(|own| own.delay_margin_ms))
+            .real_if("sensitivity_peak", margin(|own| own.sensitivity_peak))
+            .real_if("peak_command_p95", own.peak_command_p95)
+            .real_if("effort_p50", own.effort_p50)
+            .real_if("saturated_share", own.saturated_share);
     }
     table
 }

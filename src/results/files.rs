@@ -1,7 +1,7 @@
 //! The tables of a run's directory: one row each says what a table is called, and what is in it.
 
 use super::all::Results;
-use super::columns::{comparison_table, screening_table, summary_table};
+use super::columns::{comparison_table, fairness_table, screening_table, summary_table};
 use super::sensitivity::{ranking_table, worst_table};
 use super::table::Table;
 use super::tables::Tables;
@@ -58,6 +58,11 @@ pub const RUN_TABLES: &[RunTable] = &[
         name: "summary",
         is_large: false,
         make: |found| Cow::Owned(summary_table(&found.results.summary)),
+    },
+    RunTable {
+        name: "fairness",
+        is_large: false,
+        make: |found| Cow::Owned(fairness_table(&found.results.terms)),
     },
     // One controller has nothing to be compared with.
     RunTable {

@@ -11,6 +11,7 @@
 
 mod all;
 mod columns;
+pub mod fairness;
 pub mod files;
 mod paired;
 mod replicates;
@@ -27,7 +28,7 @@ mod verdict;
 mod worst_fault;
 
 pub use all::Results;
-pub use columns::{comparison_table, screening_table, summary_table};
+pub use columns::{comparison_table, fairness_table, screening_table, summary_table};
 pub use paired::{Measured, PairedComparison, Ratio, compare};
 pub use replicates::{FEWEST_REPLICATES, Replicated};
 pub use requirements::{RequirementResult, requirements};

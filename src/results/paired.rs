@@ -5,7 +5,7 @@ use super::scores::{GroupScores, Scores, Status};
 use super::strata::{Subset, parts, replicates};
 use super::team::Layout;
 use crate::campaign::Campaign;
-use crate::random::{Method, allows};
+use crate::random::Method;
 use crate::statistics::{
     Estimate, Interval, LEVEL, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
     win_rate,
@@ -146,7 +146,7 @@ fn compare_pair(
             status: &layout.scores(scores).status,
         })
         .collect();
-    let paired = allows(campaign.sampling.design(), Method::Paired);
+    let paired = campaign.allows(Method::Paired);
     let of_part = |part: &Subset| {
         let failures = paired_failures(scores, [a, b], &part.episodes);
         let difference = |episodes: &Vec<usize>| {
@@ -246,7 +246,6 @@ fn ratio(campaign: &Campaign, [a, b]: [usize; 2], part: &Subset, series: &Series
             .map(|&k| log_ratios[k])
             .collect::<Vec<f64>>()
     };
-    let design = campaign.sampling.design();
     let median = |values: &[f64]| median_bca(values, LEVEL);
     let medians: Option<Vec<f64>> = replicates(campaign, &part.episodes)
         .iter()
@@ -256,11 +255,13 @@ fn ratio(campaign: &Campaign, [a, b]: [usize; 2], part: &Subset, series: &Series
         scope,
         name: name.clone(),
         log_ratio: median(&of(&part.episodes))
-            .map(|found| measured(found, allows(design, Method::Quantile))),
+            .map(|found| measured(found, campaign.allows(Method::Quantile))),
         over_replicates: medians.and_then(|medians| over_replicates(&medians)),
-        sign_p: allows(design, Method::Paired).then(|| mcnemar_mid_p(wins, losses)),
+        sign_p: campaign
+            .allows(Method::Paired)
+            .then(|| mcnemar_mid_p(wins, losses)),
         win_rate: win_rate(wins, losses, ties, LEVEL)
-            .map(|found| measured(found, allows(design, Method::Paired))),
+            .map(|found| measured(found, campaign.allows(Method::Paired))),
         diverged,
     }
 }

@@ -4,6 +4,7 @@ use crate::campaign::AgentGroup;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
 use serde::Serialize;
+use std::ops::Range;
 
 /// How an agent or an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -70,6 +71,47 @@ pub struct GroupScores {
     pub max_abs: Vec<Vec<f64>>,
     /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
     pub failed_step: Vec<Vec<Option<u32>>>,
+    /// What the commands were, `[controller]` then episode, channel group in one list.
+    pub commands: Vec<Vec<CommandScores>>,
+}
+
+/// What the commands of a group of agents were on a channel group of an episode.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CommandScores {
+    /// The largest |u| of any agent and channel, N or N m; infinite, as the effort is, where an agent diverged.
+    pub peak: f64,
+    /// The integral of u^2, in the mean over agents and channels.
+    pub effort: f64,
+    /// The largest share of the steps at a limit of any agent and channel; not a number where an agent diverged.
+    pub saturated: f64,
+}
+
+impl CommandScores {
+    /// Of some channels of all agents; infinite where an agent diverged.
+    pub(super) fn of<'a>(
+        outcomes: impl Iterator<Item = &'a AgentOutcome>,
+        channels: Range<usize>,
+    ) -> Self {
+        let mut all = Self::default();
+        let mut count = 0.0;
+        for outcome in outcomes {
+            if outcome.diverged {
+                return Self {
+                    peak: f64::INFINITY,
+                    effort: f64::INFINITY,
+                    saturated: f64::NAN,
+                };
+            }
+            for metrics in &outcome.channels[channels.clone()] {
+                all.peak = all.peak.max(metrics.u_max);
+                all.effort += metrics.effort;
+                all.saturated = all.saturated.max(metrics.saturated_fraction);
+                count += 1.0;
+            }
+        }
+        all.effort /= count;
+        all
+    }
 }
 
 impl Scores {
@@ -88,6 +130,7 @@ impl GroupScores {
             rmse: vec![Vec::new(); controllers],
             max_abs: vec![Vec::new(); controllers],
             failed_step: vec![Vec::new(); controllers],
+            commands: vec![Vec::new(); controllers],
         }
     }
 

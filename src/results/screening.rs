@@ -106,7 +106,7 @@ fn screen_controller(
 
     let share = |k: usize, level: f64| {
         let rate = &rates[k];
-        (rate.n > 0).then(|| Estimate {
+        (rate.n > 0 && campaign.is_random()).then(|| Estimate {
             value: rate.rate(),
             interval: wilson(rate.failed(), rate.n, level),
         })
@@ -127,6 +127,9 @@ fn screen_controller(
         .collect();
     let median = |group: usize, k: usize, level: f64| {
         let sorted = &errors[group][k];
+        if !campaign.is_random() {
+            return None;
+        }
         Some(Estimate {
             value: quantile(sorted, 0.5)?,
             interval: quantile_interval(sorted, 0.5, level)?,

@@ -6,7 +6,7 @@ use super::table::Table;
 use super::team::{Layout, team_rmse};
 use crate::campaign::{AgentGroup, Campaign, Fault, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;
-use crate::random::{Method, allows};
+use crate::random::Method;
 use crate::statistics::{Effect, LEVEL, Outcome, Permutations, Ranked, effects, holm};
 use serde::{Serialize, Serializer};
 use std::cmp::Ordering;
@@ -105,12 +105,12 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
         .filter(|(_, values)| values.distinct() > 1)
         .collect();
     let (names, columns): (Vec<&String>, Vec<Ranked>) = named.into_iter().unzip();
-    let (sampling, design) = (campaign.sampling, campaign.sampling.design());
-    let with_interval = allows(design, Method::EffectInterval);
+    let sampling = campaign.sampling;
+    let with_interval = campaign.allows(Method::EffectInterval);
     let one = sampling
         .replicates()
         .is_none_or(|replicates| replicates == 1);
-    let tested = one && allows(design, Method::EffectTest);
+    let tested = one && campaign.allows(Method::EffectTest);
     let permutations = Permutations {
         seed: campaign.seed,
         most: match tested {

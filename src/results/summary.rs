@@ -5,7 +5,7 @@ use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
 use super::team::Layout;
 use crate::campaign::Campaign;
-use crate::random::{Method, allows};
+use crate::random::Method;
 use crate::statistics::{
     Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, rms, sequential_interval,
     sequential_upper, wilson,
@@ -186,6 +186,16 @@ impl FailureRate {
                 upper: found.estimate.interval.upper.min(1.0),
             })
         };
+        let interval = match method {
+            RateMethod::Wilson => Some(wilson(failed, n, LEVEL)),
+            RateMethod::Sequential => Some(sequential_interval(failed, n, LEVEL)),
+            RateMethod::Replicates => over_replicates(),
+        };
+        let upper_95 = match method {
+            RateMethod::Wilson => Some(clopper_pearson_upper(failed, n, LEVEL)),
+            RateMethod::Sequential => Some(sequential_upper(failed, n, LEVEL)),
+            RateMethod::Replicates => None,
+        };
         Self {
             controller: campaign.controllers[controller].clone(),
             agents,
@@ -194,16 +204,8 @@ impl FailureRate {
             exceeded,
             diverged,
             method,
-            interval: match method {
-                RateMethod::Wilson => Some(wilson(failed, n, LEVEL)),
-                RateMethod::Sequential => Some(sequential_interval(failed, n, LEVEL)),
-                RateMethod::Replicates => over_replicates(),
-            },
-            upper_95: match method {
-                RateMethod::Wilson => Some(clopper_pearson_upper(failed, n, LEVEL)),
-                RateMethod::Sequential => Some(sequential_upper(failed, n, LEVEL)),
-                RateMethod::Replicates => None,
-            },
+            interval: interval.filter(|_| campaign.is_random()),
+            upper_95: upper_95.filter(|_| campaign.is_random()),
         }
     }
 }
@@ -259,7 +261,7 @@ pub fn failure_rates(campaign: &Campaign, scores: &Scores) -> Vec<FailureRate> {
 #[must_use]
 pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
     let parts = parts(campaign, scores);
-    let intervals = allows(campaign.sampling.design(), Method::Quantile);
+    let intervals = campaign.allows(Method::Quantile);
     let mut rows = Vec::new();
     for controller in 0..campaign.controllers.len() {
         for part in &parts {

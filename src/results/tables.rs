@@ -1,6 +1,6 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
-use super::scores::{GroupScores, Scores, Status, status};
+use super::scores::{CommandScores, GroupScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
@@ -112,6 +112,10 @@ impl Tables {
         let scores = &mut self.scores.groups[index];
         let own_worst = judged.iter().map(|agent| agent.status).max();
         scores.status[controller].push(own_worst.unwrap_or(Status::Ok));
+        for ChannelGroup { channels, .. } in group.channel_groups() {
+            let outcomes = judged.iter().map(|agent| agent.outcome);
+            scores.commands[controller].push(CommandScores::of(outcomes, channels));
+        }
         for (place, (judged, draw)) in judged.iter().zip(&applied.agents).enumerate() {
             let key = |row: &mut Row<'_>| {
                 row.count(|| "episode".into(), u64::from(applied.index))

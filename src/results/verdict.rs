@@ -17,6 +17,9 @@ enum Side {
 /// How sure the sentences of [`verdict`] are.
 #[must_use]
 pub fn how_sure(campaign: &Campaign) -> String {
+    if !campaign.is_random() {
+        return "nothing is random: the episodes are all the same, and no test is made".to_string();
+    }
     let tests = match campaign.sampling.replicates() {
         None => "exact tests agree",
         Some(_) => "Student's t over the replicates leaves no doubt",
@@ -26,10 +29,11 @@ pub fn how_sure(campaign: &Campaign) -> String {
     )
 }
 
-/// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence; how
-/// often it fails if it is the only one. "Better" and "worse" are said where the 95 % interval and a test (McNemar's
-/// mid-p of the failures, the sign test of the errors, Student's t over the replicates of a design; at 5 % over the
-/// number of all that is looked at) leave no doubt; each sentence has the numbers that it stands on.
+/// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence, the
+/// unfavourable ones first; how often it fails if it is the only one. "Better" and "worse" are said where the 95 %
+/// interval and a test (McNemar's mid-p of the failures, the sign test of the errors, Student's t over the replicates
+/// of a design; at 5 % over the number of all that is looked at) leave no doubt; each sentence has the numbers that it
+/// stands on.
 #[must_use]
 pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
     let first = comparisons.first().map(|own| &own.a);
@@ -39,10 +43,25 @@ pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) ->
     let of_first: Vec<&PairedComparison> = of_first.collect();
     // Of each opponent, the failures and every channel group.
     let looks = of_first.iter().map(|pair| 1 + groups(pair).count()).sum();
-    match first {
-        Some(_) => of_first.iter().map(|pair| of_pair(pair, looks)).collect(),
-        None => summary.first().map(of_one).into_iter().collect(),
-    }
+    let Some(_) = first else {
+        return summary.first().map(of_one).into_iter().collect();
+    };
+    let sentences = of_first.iter().map(|pair| of_pair(pair, looks));
+    let mut sentences: Vec<(Favour, String)> = sentences.collect();
+    sentences.sort_by_key(|(favour, _)| *favour);
+    sentences
+        .into_iter()
+        .map(|(_, sentence)| sentence)
+        .collect()
+}
+
+/// What a comparison is for the first controller; what speaks against it is said first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Favour {
+    Against,
+    Mixed,
+    Open,
+    For,
 }
 
 fn of_one(row: &MetricQuantiles) -> String {
@@ -67,11 +86,11 @@ fn groups(pair: &PairedComparison) -> impl Iterator<Item = &Ratio> {
     pair.ratios.iter().filter(|ratio| ratio.scope == "group")
 }
 
-fn of_pair(pair: &PairedComparison, looks: usize) -> String {
+fn of_pair(pair: &PairedComparison, looks: usize) -> (Favour, String) {
     let failures = &pair.failures;
     let n = failures.both + failures.only_a + failures.only_b + failures.neither;
     if n == 1 {
-        return of_one_episode(pair);
+        return (Favour::Open, of_one_episode(pair));
     }
     let (by_failures, failing) = failing(pair, n, looks);
     let known = pair.known().is_some_and(|found| found.interval.is_some());
@@ -84,22 +103,32 @@ fn of_pair(pair: &PairedComparison, looks: usize) -> String {
     let any = |wanted| by_failures == wanted || sides.contains(&Some(wanted));
     let all = |wanted| sides.iter().all(|own| *own == Some(wanted));
     let (a, b) = (&pair.a, &pair.b);
-    let opening = match (any(Side::Better), any(Side::Worse)) {
-        (true, false) => format!("{a} does better than {b}"),
-        (false, true) => format!("{a} does worse than {b}"),
-        (true, true) if by_failures == Side::Worse && all(Side::Better) => {
-            format!("{a} follows more closely than {b}, but fails more often")
-        }
-        (true, true) if by_failures == Side::Better && all(Side::Worse) => {
-            format!("{a} fails less often than {b}, but follows less closely")
-        }
-        (true, true) => format!("{a} is in part better and in part worse than {b}"),
-        (false, false) if !known && sides.iter().all(Option::is_none) => {
-            format!("nothing here says how sure a difference between {a} and {b} is")
-        }
-        (false, false) => format!("{n} episodes do not tell {a} and {b} apart"),
+    let (favour, opening) = match (any(Side::Better), any(Side::Worse)) {
+        (true, false) => (Favour::For, format!("{a} does better than {b}")),
+        (false, true) => (Favour::Against, format!("{a} does worse than {b}")),
+        (true, true) if by_failures == Side::Worse && all(Side::Better) => (
+            Favour::Mixed,
+            format!("{a} follows more closely than {b}, but fails more often"),
+        ),
+        (true, true) if by_failures == Side::Better && all(Side::Worse) => (
+            Favour::Mixed,
+            format!("{a} fails less often than {b}, but follows less closely"),
+        ),
+        (true, true) => (
+            Favour::Mixed,
+            format!("{a} is in part better and in part worse than {b}"),
+        ),
+        (false, false) if !known && sides.iter().all(Option::is_none) => (
+            Favour::Open,
+            format!("nothing here says how sure a difference between {a} and {b} is"),
+        ),
+        (false, false) => (
+            Favour::Open,
+            format!("{n} episodes do not tell {a} and {b} apart"),
+        ),
     };
-    format!("{opening}: {failing}; in the median its RMS error is {errors}")
+    let sentence = format!("{opening}: {failing}; in the median its RMS error is {errors}");
+    (favour, sentence)
 }
 
 /// What a single episode shows.

@@ -53,7 +53,7 @@ pub struct Manifest {
     /// What simulated them.
     #[serde(rename = "legs")]
     pub segments: Vec<Segment>,
-    /// What there is to know about the choice of the backend.
+    /// What there is to know beside: about the choice of the backend, and what the gains do not bear.
     pub notes: Vec<String>,
     /// How some episodes compare with the reference, if they were.
     pub cross_check: Option<CrossCheck>,
@@ -62,6 +62,9 @@ pub struct Manifest {
     /// Who does better, a sentence for each opponent of the first controller; empty in runs of older versions.
     #[serde(default)]
     pub verdict: Vec<String>,
+    /// In what the first controller and each of the others are unlike, in sentences; empty in runs of older versions.
+    #[serde(default)]
+    pub unlike: Vec<String>,
     /// What the strata do to each controller, in sentences (`results::worst_fault`); empty without strata to compare.
     #[serde(default)]
     pub harm: Vec<String>,

@@ -10,7 +10,7 @@ mod tables;
 
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;
-use crate::controllers::{GainSet, GainsError};
+use crate::controllers::{GainSet, GainsError, cautions};
 use crate::results::Results;
 use crate::results::files::Found;
 use crate::simulation::cross_check::{CrossCheck, cross_check};
@@ -134,10 +134,8 @@ pub fn run_on(
     extras: Extras,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
-    let start = Instant::now();
-    progress(Progress::Gains);
-    let gains = GainSet::of_groups(campaign)?;
-    let synthesis_s = start.elapsed().as_secs_f64();
+    let (gains, synthesis_s) = synthesized(campaign, progress)?;
+    notes.extend(cautions(campaign, &gains));
 
     progress(Progress::Simulation);
     let simulation = simulate(campaign, &gains, options, gpu, &|episodes| {
@@ -170,7 +168,7 @@ pub fn run_on(
 
     let start = Instant::now();
     progress(Progress::Statistics);
-    let results = Results::of(campaign, &tables.scores, &simulation.pool);
+    let results = Results::of(campaign, &gains, &tables.scores, &simulation.pool);
     times.statistics_s += start.elapsed().as_secs_f64();
 
     progress(Progress::Writing);
@@ -192,6 +190,7 @@ pub fn run_on(
         episodes_asked: campaign.episodes,
         stopped: stopping.found(campaign),
         verdict: results.verdict.clone(),
+        unlike: results.unlike.clone(),
         harm: results.harm.clone(),
         requirements: results.requirements.clone(),
         interrupted: interrupted.map(|error| error.to_string()),
@@ -204,6 +203,17 @@ pub fn run_on(
     };
     out.write(MANIFEST, &pretty(&manifest)?)?;
     Ok(Findings { results, manifest })
+}
+
+/// The gains of a campaign, and the time that they took, s.
+fn synthesized(
+    campaign: &Campaign,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<(Vec<GainSet>, f64), GainsError> {
+    let start = Instant::now();
+    progress(Progress::Gains);
+    let gains = GainSet::of_groups(campaign)?;
+    Ok((gains, start.elapsed().as_secs_f64()))
 }
 
 /// The text of the robot's file of each group of robots, by the group's name.

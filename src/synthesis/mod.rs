@@ -23,6 +23,7 @@ mod linalg;
 mod lmi;
 mod margins;
 mod observer;
+mod placed;
 mod preset;
 mod riccati;
 mod smoothing;
@@ -38,6 +39,7 @@ pub use gains::{
 };
 pub use margins::Margins;
 pub use observer::observer_riccati;
+pub use placed::{PLACED_RAD_S, placed_gains, poles_for_delay_margin};
 pub use preset::Preset;
 pub use smoothing::{Smoothing, SmoothingRule};
 pub use verify::{Check, LoopAnalysis, Verified, verify};

@@ -106,7 +106,7 @@ fn the_campaign_of_the_readme_is_one() {
     let blocks = blocks("README.md", "toml");
     assert_eq!(blocks.len(), 1);
     let campaign = Campaign::parse(&blocks[0], Path::new("README.toml")).unwrap();
-    assert_eq!(campaign.controllers.len(), 3);
+    assert_eq!(campaign.controllers.len(), 4);
     assert_eq!(campaign.first_group().faults.len(), 1);
     // It is the shipped one, shortened: every line that has a value is a line of that file.
     let shipped = fs::read_to_string(repository("campaigns/uav-paper.toml")).unwrap();

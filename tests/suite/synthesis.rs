@@ -18,6 +18,7 @@ mod certificate;
 mod designs;
 mod lapack;
 mod loop_form;
+mod placed;
 mod reference;
 mod refusals;
 

@@ -201,6 +201,9 @@ pub struct SynthesisFile {
     pub preset: Option<String>,
     /// A gains.json that replaces the synthesized gains of "ftc", "pid" and "pid-tuned".
     pub gains: Option<String>,
+    /// How the controller "pid-placed" is placed (default: with the delay margin of "ftc").
+    #[serde(default, rename = "pid-placed", deserialize_with = "some_table")]
+    pub pid_placed: Option<PidPlacedFile>,
     /// Additional controllers.
     #[serde(default)]
     pub named: BTreeMap<String, NamedGainsFile>,
@@ -213,6 +216,18 @@ pub struct SynthesisFile {
     /// Overrides of the preset on a biped's joints.
     #[serde(default, deserialize_with = "some_table")]
     pub joints: Option<WeightsFile>,
+}
+
+/// `pid-placed`: a PID with a triple pole.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PidPlacedFile {
+    /// The poles of its error lie at minus this, rad/s.
+    pub poles_rad_s: Option<f64>,
+    /// They lie where its delay margin is that of this controller: "ftc" (the default), "pid" or "pid-tuned".
+    pub delay_margin_of: Option<String>,
+    /// The poles of its observer lie at minus this, rad/s (default 800).
+    pub observer_rad_s: Option<f64>,
 }
 
 /// An additional controller whose gains come from a file.

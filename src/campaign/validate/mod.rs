@@ -65,10 +65,9 @@ pub(super) fn validate(
         sampling,
     });
     let groups = begun.into_iter().map(|group| group.finish(&common));
-    Ok(Campaign::new(
-        common.clone(),
-        groups.collect::<Result<_, _>>()?,
-    ))
+    let campaign = Campaign::new(common.clone(), groups.collect::<Result<_, _>>()?);
+    check.can_prove(&campaign)?;
+    Ok(campaign)
 }
 
 impl Check<'_> {
@@ -131,6 +130,24 @@ impl Check<'_> {
             ));
         }
         Ok(())
+    }
+
+    /// Refuses to prove a rate of episodes that are all the same.
+    fn can_prove(&self, campaign: &Campaign) -> Result<(), CampaignError> {
+        let key = match (&campaign.stop, campaign.requirements.is_empty()) {
+            (Some(_), _) => "stop",
+            (None, false) => "require[0]",
+            (None, true) => return Ok(()),
+        };
+        if campaign.is_random() {
+            return Ok(());
+        }
+        Err(self.invalid(
+            key,
+            "given",
+            "nothing in the campaign is random: its episodes are all the same, and prove no rate",
+            "draw something from a distribution, or remove it",
+        ))
     }
 
     fn time(&self, file: &TimeFile) -> Result<Time, CampaignError> {

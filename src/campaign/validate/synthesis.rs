@@ -2,12 +2,16 @@
 
 use crate::agent::{ActuationKind, Agent, ChannelRole};
 use crate::campaign::check::Check;
-use crate::campaign::common::{BUILT_IN, FTC};
+use crate::campaign::common::{BUILT_IN, COMPARED, FTC};
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::group::{GainSource, NamedGains};
-use crate::synthesis::{ChannelDesign, Preset, SmoothingRule, SynthesisError};
+use crate::campaign::group::{GainSource, NamedGains, PidPlaced, PlacedPoles};
+use crate::synthesis::{ChannelDesign, PLACED_RAD_S, Preset, SmoothingRule, SynthesisError};
 use crate::util::suggest::did_you_mean;
+
+/// Poles of the observer of "pid-placed", rad/s: so fast that it shows what is measured, so slow that a step of 2 ms
+/// resolves it.
+const OBSERVER_RAD_S: f64 = 800.0;
 
 impl Check<'_> {
     /// Where the gains come from.
@@ -82,7 +86,57 @@ impl Check<'_> {
             designs,
             preset: preset.name().to_string(),
             gains: file.gains.as_deref().map(beside),
+            placed: self.placed(
+                file.pid_placed
+                    .as_ref()
+                    .unwrap_or(&PidPlacedFile::default()),
+            )?,
             named,
+        })
+    }
+
+    /// How a PID is placed.
+    fn placed(&self, file: &PidPlacedFile) -> Result<PidPlaced, CampaignError> {
+        let table = "synthesis.pid-placed";
+        let within = |key: &str, value: f64| {
+            let [low, high] = PLACED_RAD_S;
+            if (low..=high).contains(&value) {
+                return Ok(value);
+            }
+            Err(self.invalid(
+                format!("{table}.{key}"),
+                in_toml(value),
+                &format!("must lie within {low} and {high} rad/s"),
+                "give a value within the limits",
+            ))
+        };
+        let poles = match (file.poles_rad_s, file.delay_margin_of.as_deref()) {
+            (Some(poles_rad_s), None) => PlacedPoles::At(within("poles_rad_s", poles_rad_s)?),
+            (None, margin_of) => {
+                let margin_of = margin_of.unwrap_or(FTC);
+                if !COMPARED.contains(&margin_of) {
+                    return Err(self.invalid(
+                        format!("{table}.delay_margin_of"),
+                        format!("{margin_of:?}"),
+                        &format!("the controllers that have one are {}", COMPARED.join(", ")),
+                        &did_you_mean(margin_of, COMPARED.iter().copied(), "take one of them"),
+                    ));
+                }
+                PlacedPoles::DelayMarginOf(margin_of.to_string())
+            }
+            (Some(_), Some(_)) => {
+                return Err(self.invalid(
+                    format!("{table}.delay_margin_of"),
+                    "given",
+                    "poles_rad_s is given too, which decides where the poles are",
+                    "remove either",
+                ));
+            }
+        };
+        let observer_rad_s = file.observer_rad_s.unwrap_or(OBSERVER_RAD_S);
+        Ok(PidPlaced {
+            poles,
+            observer_rad_s: within("observer_rad_s", observer_rad_s)?,
         })
     }
 
@@ -104,7 +158,10 @@ impl Check<'_> {
             .chain(named)
             .collect();
         let Some(names) = names else {
-            return Ok(known);
+            let compared = |name: &&String| {
+                COMPARED.contains(&name.as_str()) || !BUILT_IN.contains(&name.as_str())
+            };
+            return Ok(known.iter().filter(compared).cloned().collect());
         };
         if let Some(at) = names.iter().position(|name| !known.contains(name)) {
             let name = &names[at];

@@ -3,6 +3,7 @@
 pub(crate) mod conditions;
 pub(crate) mod errors;
 pub(crate) mod failures;
+pub(crate) mod fairness;
 pub(crate) mod gains;
 pub(crate) mod provenance;
 pub(crate) mod strata;

@@ -1,7 +1,7 @@
 //! What a run found, for people.
 
 use super::attenuation;
-use super::conclusion::{in_short, requirements};
+use super::conclusion::{in_short, requirements, terms};
 use super::pairs::pairs;
 use super::screening::strata;
 use crate::campaign::{ALL, Campaign};
@@ -41,6 +41,7 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
             what_matters(campaign, findings),
             worst(findings, out),
             in_short(campaign, findings),
+            terms(findings),
             requirements(&manifest.requirements),
             written(manifest.times, out),
         ],

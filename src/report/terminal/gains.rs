@@ -53,7 +53,7 @@ fn of_controller(group: &AgentGroup, controller: &SimulatedController) -> Sectio
 pub fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
     let of_controller = |name: &str| {
         let (gains, findings) = built_in(synthesis, name);
-        Section::new(format!("{name}, {role}"), channel(gains, Some(&findings)))
+        Section::new(format!("{name}, {role}"), channel(&gains, Some(&findings)))
     };
     text(&Document {
         sections: [FTC, PID, PID_TUNED].map(of_controller).to_vec(),

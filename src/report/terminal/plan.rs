@@ -4,7 +4,7 @@ use super::drawn::{drawn, drawn_json};
 use super::effort::{lasting, seconds, steps};
 use crate::campaign::lints::cautions;
 use crate::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
-use crate::controllers::GainSet;
+use crate::controllers::{self, GainSet};
 use crate::report::page::document::{Block, Document, Section};
 use crate::report::page::text::text;
 use serde_json::{Value, json};
@@ -46,8 +46,9 @@ pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
             ));
         }
     }
-    let cautions = cautions(campaign).into_iter();
-    let cautions = cautions.map(|caution| Block::Text(format!("note: {caution}")));
+    let of_gains = controllers::cautions(campaign, gains);
+    let cautions = cautions(campaign).into_iter().chain(of_gains);
+    let cautions = cautions.map(|caution| Block::Text(wrapped(&format!("note: {caution}"))));
     text(&Document {
         title: campaign.path.display().to_string(),
         subtitle: campaign.name.clone(),
@@ -171,7 +172,8 @@ fn wrapped(sentence: &str) -> String {
 }
 
 /// [`plan`] for programs.
-pub fn plan_json(campaign: &Campaign) -> Value {
+pub fn plan_json(campaign: &Campaign, gains: &[GainSet]) -> Value {
+    let notes = [cautions(campaign), controllers::cautions(campaign, gains)].concat();
     json!({
         "name": campaign.name, "episodes": campaign.episodes, "team": campaign.agents(), "seed": campaign.seed,
         "groups": campaign.groups().iter().map(|group| json!({
@@ -184,6 +186,6 @@ pub fn plan_json(campaign: &Campaign) -> Value {
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
         "drawn": drawn_json(campaign),
         "roughly_s": seconds(campaign),
-        "notes": cautions(campaign),
+        "notes": notes,
     })
 }

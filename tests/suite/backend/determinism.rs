@@ -170,6 +170,8 @@ fn same_bytes(campaign: &Campaign) {
             "comparison.parquet",
             "episodes.csv",
             "episodes.parquet",
+            "fairness.csv",
+            "fairness.parquet",
             "gains.json",
             "ranking.csv",
             "ranking.parquet",

@@ -168,3 +168,119 @@ fn a_replay_needs_nothing_but_the_directory_of_the_run() {
     let text = place.succeeds(&["replay", "out", "--episode", "1"]);
     assert!(text.contains("episode 1 under ftc"), "{text}");
 }
+
+#[test]
+fn a_placed_pid_is_compared_where_it_is_named_with_the_margin_or_the_poles_that_it_is_given() {
+    let place = Place::smoke(&[]);
+    let controllers = ["--set", "controllers=[\"ftc\", \"pid-placed\"]"];
+    let synthesized = |more: &[&str]| {
+        let arguments = [
+            &["synthesize", "c.toml", "--json"],
+            &controllers as &[_],
+            more,
+        ]
+        .concat();
+        place.json(&arguments)["controllers"].clone()
+    };
+    let margin_ms = |controllers: &serde_json::Value, name: &str| {
+        let margins = &controllers[name]["findings"]["position"]["analysis"]["margins"];
+        margins["delay_margin_ms"].as_f64().unwrap()
+    };
+    let found = synthesized(&[]);
+    let (ftc, placed) = (margin_ms(&found, "ftc"), margin_ms(&found, "pid-placed"));
+    assert!(
+        (placed / ftc - 1.0).abs() < 1e-6 && ftc > 5.0,
+        "{ftc}, {placed}"
+    );
+    let found = synthesized(&["--set", "synthesis.pid-placed.delay_margin_of=pid-tuned"]);
+    assert!(margin_ms(&found, "pid-placed") > 2.0 * ftc);
+    let found = synthesized(&["--set", "synthesis.pid-placed={ poles_rad_s = 20 }"]);
+    let k = &found["pid-placed"]["attitude"]["k"];
+    assert_eq!(*k, serde_json::json!([-8000.0, -1200.0, -60.0]));
+
+    let run = |more: &[&str]| {
+        let arguments = [
+            &["run", "c.toml", "--overwrite", "--json"],
+            &controllers as &[_],
+            more,
+        ];
+        place.json(&arguments.concat())
+    };
+    let found = run(&["--set", "synthesis.pid-placed={ poles_rad_s = 15 }"]);
+    assert_eq!(found["comparisons"][0]["b"], "pid-placed");
+    // A file that names no controllers compares the same as ever.
+    let plain = place.json(&["check", "c.toml", "--set", "controllers=", "--json"]);
+    assert_eq!(
+        plain["controllers"],
+        serde_json::json!(["ftc", "pid", "pid-tuned"])
+    );
+
+    for (setting, said) in [
+        (
+            "synthesis.pid-placed.poles_rad_s=0.0",
+            "synthesis.pid-placed.poles_rad_s (--set synthesis.pid-placed.poles_rad_s=0.0) = 0.0: must lie within 0.01 and 1000 rad/s",
+        ),
+        (
+            "synthesis.pid-placed.observer_rad_s=1e6",
+            "must lie within 0.01 and 1000 rad/s",
+        ),
+        (
+            "synthesis.pid-placed={ poles_rad_s = 20, delay_margin_of = \"ftc\" }",
+            "poles_rad_s is given too, which decides where the poles are; remove either",
+        ),
+        (
+            "synthesis.pid-placed.delay_margin_of=ftd",
+            "the controllers that have one are ftc, pid, pid-tuned; did you mean \"ftc\"?",
+        ),
+        ("synthesis.pid-placed.pole=3", "unknown key `pole`"),
+    ] {
+        place.refuses(&["check", "c.toml", "--set", setting], 2, &[said]);
+    }
+}
+
+#[test]
+fn delays_beyond_a_margin_and_levels_that_are_not_reached_are_said_before_and_after_a_run() {
+    let place = Place::smoke(&[]);
+    let plain = place.json(&["check", "c.toml", "--json"]);
+    assert_eq!(plain["notes"], serde_json::json!([]));
+    // 6 ms of delay and half of 10 ms of hold: beyond the FTC's 7.6 ms, within the 27 ms of the tuned PID.
+    let late = ["--set", "control={ delay_s = 0.006, rate_hz = 100 }"];
+    let said = "delays add up to 11.0 ms (6.0 ms of control.delay_s, 5.0 ms of half of what control.rate_hz holds), beyond \
+                the delay margin of ftc on position (7.6 ms), ftc on attitude (7.6 ms): unstable while they last";
+    let checked = place.json(&[&["check", "c.toml", "--json"], &late as &[_]].concat());
+    assert_eq!(checked["notes"][0], said);
+    assert_eq!(checked["notes"].as_array().unwrap().len(), 1);
+    let ran = place.json(&[&["run", "c.toml", "--overwrite", "--json"], &late as &[_]].concat());
+    assert_eq!(ran["manifest"]["notes"][0], said);
+    let text = place.succeeds(&[&["check", "c.toml"], &late as &[_]].concat());
+    assert!(text.contains("note: delays add up to 11.0 ms"), "{text}");
+    // A fault that delays counts with its longest delay, unless nobody has it.
+    let fault = |probability: &str| {
+        let fault = "fault.+={ target = \"network\", kind = \"delay\", delay_s = { uniform = [0.004, 0.008] }, probability = ";
+        format!("{fault}{probability} }}")
+    };
+    let notes = |probability: &str| {
+        let fault = fault(probability);
+        let found = place.json(&["check", "c.toml", "--json", "--set", &fault]);
+        found["notes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|own| own.as_str().unwrap().to_string())
+            .collect::<Vec<_>>()
+    };
+    assert!(
+        notes("0.5")[0].contains("delays add up to 8.0 ms (8.0 ms of the longest delay fault)")
+    );
+    assert!(
+        notes("0.0")
+            .iter()
+            .all(|own| own.contains("nobody ever has"))
+    );
+
+    // A level below what can be had is not reached, and is said not to be.
+    let low = ["--set", "synthesis.position.rho=9.0"];
+    let checked = place.json(&[&["check", "c.toml", "--json"], &low as &[_]].concat());
+    let said = "ftc on position: the weights ask for an attenuation of rho = 9, the gains certify 10.135 only";
+    assert_eq!(checked["notes"], serde_json::json!([said]));
+}

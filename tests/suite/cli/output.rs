@@ -9,11 +9,13 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 14] = [
+const FILES: [&str; 16] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
     "episodes.parquet",
+    "fairness.csv",
+    "fairness.parquet",
     "gains.json",
     "manifest.json",
     "ranking.csv",

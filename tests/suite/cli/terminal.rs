@@ -105,10 +105,10 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
         "  ftc does better than pid: it fails in 0.0 % of the episodes, the other in "
     ));
     assert!(lines[1].starts_with("  ftc does better than pid-tuned: neither fails; "));
-    assert_eq!(
-        lines[3],
-        "requirements: the failure rate with 95 % confidence"
-    );
+    assert!(lines[3].starts_with("on what terms: "), "{}", lines[3]);
+    let head = "requirements: the failure rate with 95 % confidence";
+    let at = lines.iter().position(|line| *line == head);
+    let lines = &lines[at.unwrap() - 3..];
     // 1 - 0.05^(1/16) = 0.17074, and a bound is never rounded down.
     assert_eq!(
         lines[4],

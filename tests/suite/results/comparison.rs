@@ -49,6 +49,7 @@ fn scores(campaign: &Campaign, outcome: impl Fn(usize, usize) -> (Status, f64)) 
             failed_step: controllers
                 .map(|_| vec![None; episodes * campaign.first_group().team])
                 .collect(),
+            commands: vec![Vec::new(); campaign.controllers.len()],
         }],
         fault_occurs: vec![vec![false; episodes]; campaign.first_group().faults.len()],
         conditions: Vec::new(),

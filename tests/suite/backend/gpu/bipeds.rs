@@ -38,7 +38,7 @@ fn val_bipeds_that_do_well_under_both_controllers_agree() {
         "biped-paper",
         &[
             "episodes=9",
-            "controllers.2=",
+            "controllers=[\"ftc\", \"pid\"]",
             "time.duration_s=0.6",
             "time.settle_s=0.2",
             "reference.agents.0.start_s=-3.0",
