@@ -51,11 +51,7 @@ impl Tables {
                     .map(|condition| (condition.key.clone(), Vec::new()))
                     .collect(),
             },
-            quantities: campaign
-                .groups()
-                .iter()
-                .map(|group| quantities(group))
-                .collect(),
+            quantities: campaign.groups().iter().map(quantities).collect(),
             conditions,
         }
     }

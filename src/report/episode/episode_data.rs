@@ -65,7 +65,7 @@ impl<'a> EpisodeView<'a> {
             draws: groups()
                 .map(|group| draw(group, replay.episode).applied(group))
                 .collect(),
-            quantities: groups().map(|group| quantities(group)).collect(),
+            quantities: groups().map(quantities).collect(),
             traces: std::iter::once(asked).chain(others).collect(),
             duration_s: f64::from(campaign.time.steps) * campaign.time.step_s,
         }
