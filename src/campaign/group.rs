@@ -214,6 +214,10 @@ pub struct Verdict {
     pub max_rmse: Vec<f64>,
     /// |e| at or below this counts as settled, per channel.
     pub settled_error: Vec<f64>,
+    /// Smallest ratio of two controllers' errors that counts as a difference, at least 1.
+    pub smallest_ratio: f64,
+    /// RMS errors below this, m or rad, count as equal to it in comparisons.
+    pub smallest_error: f64,
 }
 
 /// Where the gains come from.

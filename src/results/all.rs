@@ -55,7 +55,7 @@ impl Results {
         let comparisons = compare(campaign, scores);
         let screenings = screen(campaign, scores);
         Self {
-            verdict: verdict(&summary, &comparisons),
+            verdict: verdict(campaign, &summary, &comparisons),
             unlike: unlike(&terms),
             harm: harm(&screenings),
             terms,

@@ -1,8 +1,8 @@
 //! What the scores of a run say: how each controller fared, how each pair of them compares, and which fault hurts most.
 //!
-//! The sample unit is the episode. Metrics are compared in the logarithm, channel by channel or averaged over the
-//! channels of one unit and over the team. A diverged episode has an infinite metric; where both controllers diverge
-//! the pair is a tie.
+//! The sample unit is the episode. Its RMS error is taken over the team and over the channels of one unit, or those of
+//! one channel, in the summary and in the comparison alike; pairs are compared in its logarithm. A diverged episode has
+//! an infinite error; where both controllers diverge the pair is a tie.
 //!
 //! Everything is said of all episodes together, then of each stratum. What is said of all is about the campaign's own
 //! mixture; that each stratum has its share exactly, and not by chance, makes its intervals cautious, if anything

@@ -1,9 +1,9 @@
 //! How pairs of controllers compare on the same episodes.
 
 use super::replicates::{Replicated, over_replicates};
-use super::scores::{GroupScores, Scores, Status};
+use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::team::Layout;
+use super::team::{Layout, team_rmse};
 use crate::campaign::Campaign;
 use crate::random::Method;
 use crate::statistics::{
@@ -52,14 +52,15 @@ pub struct PairedComparison {
     pub ratios: Vec<Ratio>,
 }
 
-/// How much smaller the RMS error of `a` is than that of `b`.
+/// How much smaller the RMS error of `a` is than that of `b`. The RMS error of an episode is that of the summary: over
+/// the team and the channels of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ratio {
     /// "group" or "channel".
     pub scope: &'static str,
     /// The channel or group.
     pub name: Arc<str>,
-    /// Median over the episodes of ln(rmse of b / rmse of a), averaged over the team and over the channels of a group.
+    /// Median over the episodes of ln(rmse of b / rmse of a).
     pub log_ratio: Option<Measured>,
     /// Student's t of that median over the replicates of a sampling design, if there are enough of them: the value is
     /// the mean of their medians.
@@ -142,7 +143,7 @@ fn compare_pair(
         .map(|(scope, name, layout)| Series {
             scope,
             name,
-            log_ratios: log_ratios(scores, [a, b], &layout),
+            log_ratios: log_ratios(campaign, scores, [a, b], &layout),
             status: &layout.scores(scores).status,
         })
         .collect();
@@ -266,40 +267,19 @@ fn ratio(campaign: &Campaign, [a, b]: [usize; 2], part: &Subset, series: &Series
     }
 }
 
-/// ln(rmse of `b` / rmse of `a`) of each episode, averaged over the team and the channels; infinite where one of them
-/// diverged, 0 where both did.
-pub(super) fn log_ratios(scores: &Scores, [a, b]: [usize; 2], layout: &Layout) -> Vec<f64> {
-    let GroupScores { status, rmse, .. } = layout.scores(scores);
-    let of_episode = |episode: usize| {
-        let gone = |controller: usize| status[controller][episode] == Status::Diverged;
-        match (gone(a), gone(b)) {
-            (true, true) => 0.0,
-            (true, false) => f64::NEG_INFINITY,
-            (false, true) => f64::INFINITY,
-            (false, false) => {
-                let pairs = layout
-                    .of(&rmse[a], episode)
-                    .zip(layout.of(&rmse[b], episode));
-                let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (of_a, of_b)| {
-                    (sum + log_ratio_of(of_a, of_b), count + 1.0)
-                });
-                // One perfect channel each: neither is better.
-                if sum.is_nan() { 0.0 } else { sum / count }
-            }
-        }
+/// ln(rmse of `b` / rmse of `a`) of each episode; infinite where one of them diverged, 0 where both did. Errors that
+/// are rounding are taken for equal.
+pub(super) fn log_ratios(
+    campaign: &Campaign,
+    scores: &Scores,
+    [a, b]: [usize; 2],
+    layout: &Layout,
+) -> Vec<f64> {
+    let smallest = layout.group(campaign).verdict.smallest_error;
+    let [of_a, of_b] = [a, b].map(|controller| team_rmse(scores, controller, layout));
+    let of_pair = |(of_a, of_b): (f64, f64)| match of_a.is_infinite() && of_b.is_infinite() {
+        true => 0.0,
+        false => (of_b.max(smallest) / of_a.max(smallest)).ln(),
     };
-    (0..scores.episodes()).map(of_episode).collect()
-}
-
-/// ln(b / a).
-#[expect(
-    clippy::float_cmp,
-    reason = "two errors of exactly zero are a tie, and so are equal ones"
-)]
-fn log_ratio_of(of_a: f64, of_b: f64) -> f64 {
-    if of_a == of_b {
-        0.0
-    } else {
-        (of_b / of_a).ln()
-    }
+    of_a.into_iter().zip(of_b).map(of_pair).collect()
 }

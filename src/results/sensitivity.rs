@@ -213,7 +213,8 @@ fn targets(campaign: &Campaign, scores: &Scores) -> Vec<(Target, Outcome)> {
         for b in a + 1..controllers.len() {
             for of_group in &groups {
                 let layout = Layout::new(campaign, of_group);
-                if let Some(ranked) = Ranked::of_all(&log_ratios(scores, [a, b], &layout)) {
+                if let Some(ranked) = Ranked::of_all(&log_ratios(campaign, scores, [a, b], &layout))
+                {
                     let target = Target {
                         kind: "log_ratio",
                         controller: controllers[a].clone(),

@@ -1,7 +1,7 @@
 //! A metric of a team's episode, from those of its agents and channels.
 
 use super::scores::{GroupScores, Scores, Status};
-use crate::campaign::{Campaign, ChannelsOfCampaign};
+use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign};
 use crate::statistics::rms;
 use std::ops::Range;
 
@@ -28,6 +28,11 @@ impl Layout {
             width: own.channels().len(),
             channels,
         }
+    }
+
+    /// The group.
+    pub(super) fn group<'a>(&self, campaign: &'a Campaign) -> &'a AgentGroup {
+        &campaign.groups()[self.group]
     }
 
     /// The scores of the group.

@@ -11,8 +11,13 @@ use crate::util::format::rounded_up;
 enum Side {
     Better,
     Worse,
+    /// Surely different, but by less than counts.
+    Alike,
     Unsure,
 }
+
+/// What is said of errors of which nothing is sure.
+const UNCLEAR: &str = "not clearly different";
 
 /// How sure the sentences of [`verdict`] are.
 #[must_use]
@@ -32,10 +37,15 @@ pub fn how_sure(campaign: &Campaign) -> String {
 /// How the campaign's first controller fares against each of the others, over all episodes, each in a sentence, the
 /// unfavourable ones first; how often it fails if it is the only one. "Better" and "worse" are said where the 95 %
 /// interval and a test (McNemar's mid-p of the failures, the sign test of the errors, Student's t over the replicates
-/// of a design; at 5 % over the number of all that is looked at) leave no doubt; each sentence has the numbers that it
-/// stands on.
+/// of a design; at 5 % over the number of all that is looked at) leave no doubt, the ratio of the errors is one that
+/// counts (`verdict.smallest_ratio`), and the medians of the summary do not say the contrary; each sentence has the
+/// numbers that it stands on.
 #[must_use]
-pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) -> Vec<String> {
+pub fn verdict(
+    campaign: &Campaign,
+    summary: &[MetricQuantiles],
+    comparisons: &[PairedComparison],
+) -> Vec<String> {
     let first = comparisons.first().map(|own| &own.a);
     let of_first = comparisons
         .iter()
@@ -46,13 +56,50 @@ pub fn verdict(summary: &[MetricQuantiles], comparisons: &[PairedComparison]) ->
     let Some(_) = first else {
         return summary.first().map(of_one).into_iter().collect();
     };
-    let sentences = of_first.iter().map(|pair| of_pair(pair, looks));
+    let context = Context {
+        campaign,
+        summary,
+        looks,
+    };
+    let sentences = of_first.iter().map(|pair| of_pair(pair, &context));
     let mut sentences: Vec<(Favour, String)> = sentences.collect();
     sentences.sort_by_key(|(favour, _)| *favour);
     sentences
         .into_iter()
         .map(|(_, sentence)| sentence)
         .collect()
+}
+
+/// What a comparison is seen in.
+struct Context<'a> {
+    campaign: &'a Campaign,
+    summary: &'a [MetricQuantiles],
+    /// How much is looked at in all.
+    looks: usize,
+}
+
+impl Context<'_> {
+    /// The smallest ratio that counts on a channel group.
+    fn smallest(&self, name: &str) -> f64 {
+        let groups = self.campaign.channel_groups();
+        let of = groups.iter().find(|of| *of.name == *name);
+        let group = of.map(|of| &self.campaign.groups()[of.group]);
+        group.map_or(1.0, |group| group.verdict.smallest_ratio)
+    }
+
+    /// The median RMS error of a controller on a channel group, over all episodes, as the summary has it.
+    fn median(&self, controller: &str, name: &str) -> Option<f64> {
+        let mut rows = self.summary.iter();
+        let row = rows.find(|row| {
+            let of = &row.failures;
+            of.controller == controller
+                && *of.stratum == *ALL
+                && row.metric == "rmse"
+                && *row.group == *name
+        })?;
+        // The first quantile is the median.
+        row.quantiles.first()?.value
+    }
 }
 
 /// What a comparison is for the first controller; what speaks against it is said first.
@@ -86,18 +133,20 @@ fn groups(pair: &PairedComparison) -> impl Iterator<Item = &Ratio> {
     pair.ratios.iter().filter(|ratio| ratio.scope == "group")
 }
 
-fn of_pair(pair: &PairedComparison, looks: usize) -> (Favour, String) {
+fn of_pair(pair: &PairedComparison, context: &Context<'_>) -> (Favour, String) {
     let failures = &pair.failures;
     let n = failures.both + failures.only_a + failures.only_b + failures.neither;
     if n == 1 {
         return (Favour::Open, of_one_episode(pair));
     }
-    let (by_failures, failing) = failing(pair, n, looks);
+    let (by_failures, failing) = failing(pair, n, context.looks);
     let known = pair.known().is_some_and(|found| found.interval.is_some());
-    let (sides, errors): (Vec<Option<Side>>, Vec<String>) =
-        groups(pair).map(|group| error_of(group, looks)).unzip();
-    let errors = match sides.iter().all(|own| *own == Some(Side::Unsure)) {
-        true => "not clearly different".to_string(),
+    let (sides, errors): (Vec<Option<Side>>, Vec<String>) = groups(pair)
+        .map(|group| error_of(pair, group, context))
+        .unzip();
+    let unclear = |words: &String| words.starts_with(UNCLEAR);
+    let errors = match errors.iter().all(unclear) {
+        true => UNCLEAR.to_string(),
         false => errors.join(" and "),
     };
     let any = |wanted| by_failures == wanted || sides.contains(&Some(wanted));
@@ -122,6 +171,9 @@ fn of_pair(pair: &PairedComparison, looks: usize) -> (Favour, String) {
             Favour::Open,
             format!("nothing here says how sure a difference between {a} and {b} is"),
         ),
+        (false, false) if all(Side::Alike) && by_failures == Side::Unsure => {
+            (Favour::Open, format!("{a} and {b} follow equally well"))
+        }
         (false, false) => (
             Favour::Open,
             format!("{n} episodes do not tell {a} and {b} apart"),
@@ -193,18 +245,48 @@ fn failing(pair: &PairedComparison, n: u64, looks: usize) -> (Side, String) {
 }
 
 /// Whether the errors of `a` are smaller on a group of channels; none where no interval tells.
-fn error_of(ratio: &Ratio, looks: usize) -> (Option<Side>, String) {
+fn error_of(
+    pair: &PairedComparison,
+    ratio: &Ratio,
+    context: &Context<'_>,
+) -> (Option<Side>, String) {
     let name = &ratio.name;
-    let found = ratio.known();
-    let interval = found.and_then(|found| found.interval);
-    let side = interval.map(|own| sure(side(own.lower, own.upper), ratio.p(), looks));
-    let words = match (side, found) {
-        (_, None) => format!("unknown in {name}"),
-        (None, Some(found)) => format!("{} in {name} (no interval)", times(found.value, None)),
-        (Some(Side::Unsure), _) => format!("not clearly different in {name}"),
-        (Some(_), Some(found)) => format!("{} in {name}", times(found.value, interval)),
+    let Some(found) = ratio.known() else {
+        return (None, format!("unknown in {name}"));
     };
-    (side, words)
+    let Some(interval) = found.interval else {
+        let words = format!("{} in {name} (no interval)", times(found.value, None));
+        return (None, words);
+    };
+    let smallest = context.smallest(name);
+    let side = match sure(
+        side(interval.lower, interval.upper),
+        ratio.p(),
+        context.looks,
+    ) {
+        Side::Better | Side::Worse if found.value.abs() < smallest.ln() => Side::Alike,
+        side => side,
+    };
+    let measured = times(found.value, Some(interval));
+    // A ratio in the median of the pairs may contradict the medians of the two, which stand in the same report.
+    let medians = [&pair.a, &pair.b].map(|own| context.median(own, name));
+    let contrary = match (side, medians) {
+        (Side::Better, [Some(a), Some(b)]) => (a > b).then_some("larger"),
+        (Side::Worse, [Some(a), Some(b)]) => (a < b).then_some("smaller"),
+        _ => None,
+    };
+    match (side, contrary) {
+        (_, Some(contrary)) => (
+            Some(Side::Unsure),
+            format!("{measured} in {name}, although its own median is {contrary} than the other's"),
+        ),
+        (Side::Unsure, _) => (Some(side), format!("{UNCLEAR} in {name}")),
+        (Side::Alike, _) => (
+            Some(side),
+            format!("{measured} in {name}, which is less than counts ({smallest})"),
+        ),
+        _ => (Some(side), format!("{measured} in {name}")),
+    }
 }
 
 /// A side, if its test agrees with so many looks at the data.

@@ -357,4 +357,8 @@ pub struct VerdictFile {
     pub max_rmse: Option<Numbers>,
     /// |e| at or below this counts as settled, m or rad (default 0.05).
     pub settled_error: Option<Numbers>,
+    /// Smallest ratio of two controllers' RMS errors that makes one of them better (default 1.05).
+    pub smallest_ratio: Option<f64>,
+    /// RMS errors below this are rounding, m or rad: comparisons take them for equal to it (default 1e-6).
+    pub smallest_error: Option<f64>,
 }

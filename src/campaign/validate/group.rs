@@ -12,6 +12,11 @@ use crate::campaign::quantity::RandomQuantity;
 use crate::campaign::time::Time;
 use std::sync::Arc;
 
+/// Smallest ratio of errors that counts, if the file has none.
+const SMALLEST_RATIO: f64 = 1.05;
+/// Errors below this, m or rad, are rounding, if the file has none: steps of single precision at a distance of 10 m.
+const SMALLEST_ERROR: f64 = 1e-6;
+
 /// Agents that all groups of a campaign may have together.
 pub(super) const MAX_AGENTS: usize = 64;
 
@@ -273,6 +278,16 @@ impl Check<'_> {
                 "verdict.settled_error",
                 file.settled_error.as_ref(),
                 0.05,
+                Bounds::Positive,
+            )?,
+            smallest_ratio: self.number(
+                "verdict.smallest_ratio",
+                file.smallest_ratio.unwrap_or(SMALLEST_RATIO),
+                Bounds::Between(1.0, 10.0),
+            )?,
+            smallest_error: self.number(
+                "verdict.smallest_error",
+                file.smallest_error.unwrap_or(SMALLEST_ERROR),
                 Bounds::Positive,
             )?,
         })

@@ -67,8 +67,8 @@ pub(crate) fn pairs(data: &RunData) -> Section {
         }
     }
     let explained = format!(
-        "The same episodes under both controllers. Factor: median over the episodes of the ratio of RMS errors, averaged over \
-         the team in the logarithm, {interval}; above 1 the first is closer. A diverged episode counts as \
+        "The same episodes under both controllers. Factor: median over the episodes of the ratio of RMS errors over the \
+         team, {interval}; above 1 the first is closer. A diverged episode counts as \
          infinitely bad, a pair of two as a tie."
     );
     Section::new(

@@ -24,18 +24,34 @@ fn every_shipped_campaign_is_valid_and_bears_its_file_name() {
     assert!(count >= 13, "{count} campaigns");
 }
 
-/// Median log-ratio of RMS errors, as a ratio, of each channel for a pair of controllers.
+/// Median ratio of RMS errors of each channel for a pair of controllers, averaged over the team in the logarithm, as
+/// the independent run had it; what diverges has an infinite error.
 fn channel_ratios(campaign: &Campaign, a: &str, b: &str) -> Vec<f64> {
     let tables = tables(campaign, Precision::F32);
-    let comparisons = compare(campaign, &tables.scores);
-    let pair = comparisons
-        .iter()
-        .find(|pair| pair.a == a && pair.b == b)
-        .unwrap();
-    let channels = pair.ratios.iter().filter(|ratio| ratio.scope == "channel");
-    channels
-        .map(|ratio| ratio.log_ratio.unwrap().value.exp())
-        .collect()
+    let [a, b] = [a, b].map(|name| {
+        let mut names = campaign.controllers.iter();
+        names.position(|own| own == name).unwrap()
+    });
+    let scores = &tables.scores.groups[0];
+    let (team, width) = (
+        campaign.first_group().team,
+        campaign.first_group().channels().len(),
+    );
+    let log_ratio = |episode: usize, channel: usize| {
+        if scores.status[b][episode] == Status::Diverged {
+            return f64::INFINITY;
+        }
+        let of = |agent: usize| {
+            let place = (episode * team + agent) * width + channel;
+            (scores.rmse[b][place] / scores.rmse[a][place]).ln()
+        };
+        (0..team).map(of).sum::<f64>() / team as f64
+    };
+    let of_channel = |channel| {
+        let episodes = 0..tables.scores.episodes();
+        median(episodes.map(|own| log_ratio(own, channel)).collect()).exp()
+    };
+    (0..width).map(of_channel).collect()
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -277,7 +277,11 @@ fn said(failures: [usize; 2], ratio: f64) -> String {
         };
         (status, 0.01 * [1.0, ratio][controller])
     });
-    let sentences = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores));
+    let sentences = verdict(
+        &campaign,
+        &summarise(&campaign, &scores),
+        &compare(&campaign, &scores),
+    );
     assert_eq!(sentences.len(), 1, "{sentences:?}");
     sentences[0].clone()
 }
@@ -353,7 +357,11 @@ fn the_verdict_on_one_episode_claims_nothing_of_others() {
             [0.01, 0.03][controller],
         )
     });
-    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores));
+    let said = verdict(
+        &campaign,
+        &summarise(&campaign, &scores),
+        &compare(&campaign, &scores),
+    );
     assert_eq!(
         said,
         [
@@ -367,14 +375,14 @@ fn the_verdict_on_one_episode_claims_nothing_of_others() {
 fn a_single_controller_has_a_verdict_of_its_own() {
     let campaign = campaign(30).with(|own| own.controllers.truncate(1));
     let scores = scores(&campaign, |_, _| (Status::Ok, 0.01));
-    let said = verdict(&summarise(&campaign, &scores), &[]);
+    let said = verdict(&campaign, &summarise(&campaign, &scores), &[]);
     // 1 - 0.05^(1/30) = 0.09503, and a bound is never rounded down.
     assert_eq!(
         said,
         ["ftc fails in 0 of 30 episodes: with 95 % confidence its failure rate is below 9.51 %"]
     );
     let scores = self::scores(&campaign, |_, _| (Status::Exceeded, 0.01));
-    let said = verdict(&summarise(&campaign, &scores), &[]);
+    let said = verdict(&campaign, &summarise(&campaign, &scores), &[]);
     // Wilson's interval of 30 of 30 begins at 30 / (30 + 1.96^2) = 0.8865.
     assert_eq!(
         said,
@@ -427,7 +435,12 @@ fn four_episodes_do_not_make_a_verdict() {
         let fails = controller == 1 && episode < 4;
         (if fails { Status::Exceeded } else { Status::Ok }, 0.01)
     });
-    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    let said = verdict(
+        &campaign,
+        &summarise(&campaign, &scores),
+        &compare(&campaign, &scores),
+    )
+    .join("");
     assert!(
         said.starts_with("4 episodes do not tell ftc and pid apart: "),
         "{said}"
@@ -439,7 +452,12 @@ fn four_episodes_do_not_make_a_verdict() {
 fn two_episodes_that_diverge_have_no_errors_to_compare() {
     let campaign = campaign(3).with(|own| (own.episodes, own.strata) = (1, Strata::default()));
     let scores = scores(&campaign, |_, _| (Status::Diverged, f64::NAN));
-    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    let said = verdict(
+        &campaign,
+        &summarise(&campaign, &scores),
+        &compare(&campaign, &scores),
+    )
+    .join("");
     assert!(
         said.ends_with("both fail; both diverge, so there are no errors to compare"),
         "{said}"
@@ -455,7 +473,12 @@ fn a_diverged_half_makes_an_error_infinitely_smaller() {
             false => (Status::Ok, 0.01),
         }
     });
-    let said = verdict(&summarise(&campaign, &scores), &compare(&campaign, &scores)).join("");
+    let said = verdict(
+        &campaign,
+        &summarise(&campaign, &scores),
+        &compare(&campaign, &scores),
+    )
+    .join("");
     assert!(
         said.contains("infinitely smaller [")
             && said.contains(", inf] (diverged episodes count as infinite), in position"),
