@@ -2,7 +2,8 @@
 //! forbidden by nothing.
 
 use super::gain_set::GainSet;
-use crate::campaign::{AgentGroup, Campaign, Distribution, FaultKind, RandomQuantity};
+use crate::campaign::kinds::DELAY;
+use crate::campaign::{AgentGroup, Campaign, Distribution, Fault, FaultKind, RandomQuantity};
 
 /// A sentence for each of them: delays beyond the margin of a controller, and attenuation levels that are not reached.
 #[must_use]
@@ -29,13 +30,14 @@ fn late(group: &AgentGroup, gains: &GainSet) -> Option<String> {
         0 | 1 => 0.0,
         steps => 0.5 * f64::from(steps) * group.time.step_s,
     };
-    let faults = group.faults.iter();
-    let faults_s = faults
-        .filter(|fault| {
-            fault.kind == FaultKind::Delay && fault.probability.iter().any(|own| *own > 0.0)
-        })
-        .filter_map(|fault| fault.parameters.first().map(longest))
-        .fold(0.0, f64::max);
+    let is_met = |fault: &&Fault| {
+        fault.kind == FaultKind::Delay && fault.probability.iter().any(|own| *own > 0.0)
+    };
+    let delays = group.faults.iter().filter(is_met).filter_map(|fault| {
+        let place = DELAY.place_in(fault.kind.parameters())?;
+        fault.parameters.get(place)
+    });
+    let faults_s = delays.map(longest).fold(0.0, f64::max);
     let total_ms = 1e3 * (delay_s + held_s + faults_s);
     let beyond = gains.controllers.iter().flat_map(|controller| {
         let channels = group.channel_groups().into_iter().zip(&controller.groups);

@@ -168,6 +168,10 @@ pub(super) fn controller(
     let Some(mut found) = controllers.remove(controller) else {
         let known: Vec<&str> = controllers.keys().map(String::as_str).collect();
         let reason = match known.as_slice() {
+            [] if file.groups.is_empty() => {
+                "controllers: absent, the file has no gains; name the gains.json of a run"
+                    .to_string()
+            }
             [] => format!(
                 "controllers.{controller}: absent, the file has gains of the groups {} only; name the group so",
                 file.groups.keys().cloned().collect::<Vec<_>>().join(", ")

@@ -137,6 +137,12 @@ fn differences(own: &Terms, other: &Terms) -> Vec<String> {
         own.peak_command_p95,
         other.peak_command_p95,
     );
+    compare(
+        "effort (median)",
+        "N^2 s or N^2 m^2 s",
+        own.effort_p50,
+        other.effort_p50,
+    );
     if let (Some(own), Some(other)) = (own.saturated_share, other.saturated_share)
         && (own - other).abs() > UNLIKE_SHARE
     {

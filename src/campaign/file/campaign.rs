@@ -95,7 +95,7 @@ campaign_and_group! {
         seed: u64,
         /// Number of episodes.
         episodes: u32,
-        /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned" or a name under
+        /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned", "pid-placed" or a name under
         /// `[synthesis.named]`.
         controllers: Option<Vec<String>>,
         /// Duration and step.

@@ -114,6 +114,7 @@ fn a_gains_file_of_another_form_is_refused() {
     };
     refused("", &["gains.json"]);
     refused("name = 1", &["line 1", "gains.json"]);
+    refused("{ \"format\": 1 }", &["the file has no gains"]);
     refused(
         &changed(|gains| gains["extra"] = json!(1)),
         &["`extra`", "`controllers`"],

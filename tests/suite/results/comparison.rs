@@ -1,9 +1,10 @@
 //! What is said of each stratum, against numbers worked out by hand.
 
+use super::scores_of_channels;
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
 use urts_mc::random::philox::{Address, Stream};
-use urts_mc::results::scores::{GroupScores, Scores, Status};
+use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::sensitivity::worst;
 use urts_mc::results::{
     RateMethod, compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
@@ -29,31 +30,9 @@ fn campaign(episodes: u32) -> Campaign {
 /// Scores without a simulation: whether a controller fails in an episode, and its RMS error on all channels of all
 /// agents.
 fn scores(campaign: &Campaign, outcome: impl Fn(usize, usize) -> (Status, f64)) -> Scores {
-    let episodes = campaign.episodes as usize;
-    let channels = campaign.first_group().team * campaign.first_group().channels().len();
-    let controllers = 0..campaign.controllers.len();
-    let errors = |controller: usize| -> Vec<f64> {
-        let of_episode = |episode| vec![outcome(controller, episode).1; channels];
-        (0..episodes).flat_map(of_episode).collect()
-    };
-    let status: Vec<Vec<Status>> = controllers
-        .clone()
-        .map(|controller| (0..episodes).map(|k| outcome(controller, k).0).collect())
-        .collect();
-    Scores {
-        status: status.clone(),
-        groups: vec![GroupScores {
-            status,
-            rmse: controllers.clone().map(errors).collect(),
-            max_abs: controllers.clone().map(errors).collect(),
-            failed_step: controllers
-                .map(|_| vec![None; episodes * campaign.first_group().team])
-                .collect(),
-            commands: vec![Vec::new(); campaign.controllers.len()],
-        }],
-        fault_occurs: vec![vec![false; episodes]; campaign.first_group().faults.len()],
-        conditions: Vec::new(),
-    }
+    scores_of_channels(campaign, |controller, episode, _| {
+        outcome(controller, episode)
+    })
 }
 
 /// In 30 episodes, ten of each stratum: the FTC fails twice with the actuator fault; the PID fails in seven others of

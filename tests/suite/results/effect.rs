@@ -1,9 +1,10 @@
 //! One size of an effect: what the verdict says of the errors, and what the tables show.
 
+use super::scores_of_channels;
 use crate::common::altered;
 use proptest::prelude::*;
 use urts_mc::campaign::Campaign;
-use urts_mc::results::scores::{GroupScores, Scores, Status};
+use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::{Ratio, compare, summarise, verdict};
 
 /// One UAV under two controllers.
@@ -21,28 +22,9 @@ fn campaign(episodes: u32, settings: &[&str]) -> Campaign {
 
 /// Scores without failures: the RMS error under a controller, in an episode, on a channel.
 fn scores(campaign: &Campaign, rmse: impl Fn(usize, usize, usize) -> f64) -> Scores {
-    let episodes = campaign.episodes as usize;
-    let group = campaign.first_group();
-    let controllers = campaign.controllers.len();
-    let width = group.channels().len();
-    let errors = |controller| -> Vec<f64> {
-        let rows = 0..episodes * width;
-        rows.map(|row| rmse(controller, row / width, row % width))
-            .collect()
-    };
-    let status = vec![vec![Status::Ok; episodes]; controllers];
-    Scores {
-        status: status.clone(),
-        groups: vec![GroupScores {
-            status,
-            rmse: (0..controllers).map(errors).collect(),
-            max_abs: (0..controllers).map(errors).collect(),
-            failed_step: vec![vec![None; episodes]; controllers],
-            commands: vec![Vec::new(); controllers],
-        }],
-        fault_occurs: vec![vec![false; episodes]; group.faults.len()],
-        conditions: Vec::new(),
-    }
+    scores_of_channels(campaign, |controller, episode, channel| {
+        (Status::Ok, rmse(controller, episode, channel))
+    })
 }
 
 /// The verdict on two controllers.

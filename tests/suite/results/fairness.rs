@@ -117,6 +117,14 @@ fn what_is_unlike_is_said_and_what_is_alike_is_not() {
         assert_eq!(unlike(&other).len(), usize::from(said));
     }
     let mut other = twins.clone();
+    other[2].effort_p50 = twins[0].effort_p50.map(|effort| 2.0 * effort);
+    let said = unlike(&other);
+    assert!(
+        said[0].contains("effort (median) ")
+            && said[0].ends_with(" N^2 s or N^2 m^2 s in position"),
+        "{said:?}"
+    );
+    let mut other = twins.clone();
     other[2].saturated_share = Some(0.4);
     assert_eq!(
         unlike(&other),
