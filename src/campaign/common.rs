@@ -10,14 +10,26 @@ use std::sync::Arc;
 pub const FTC: &str = "ftc";
 /// Name of the PID computed-torque controller, the paper's text read plainly.
 pub const PID: &str = "pid";
-/// Name of the PID whose observer distrusts the faulty velocity channel.
-pub const PID_TUNED: &str = "pid-tuned";
-
+/// Name of the PID with the same feedback whose observer distrusts the faulty velocity channel.
+pub const PID_ROBUST_OBSERVER: &str = "pid-robust-observer";
 /// Name of the PID with a triple pole.
 pub const PID_PLACED: &str = "pid-placed";
+/// Name of the PID that a search found for the preset's campaign.
+pub const PID_TUNED: &str = "pid-tuned";
+/// Name of the fault-tolerant controller that the same search found.
+pub const FTC_TUNED: &str = "ftc-tuned";
 
 /// The controllers that need no file.
-pub const BUILT_IN: [&str; 4] = [FTC, PID, PID_TUNED, PID_PLACED];
+pub const BUILT_IN: [&str; 6] = [
+    FTC,
+    FTC_TUNED,
+    PID,
+    PID_PLACED,
+    PID_TUNED,
+    PID_ROBUST_OBSERVER,
+];
+/// Those among them whose gains are made of the campaign's weights.
+pub const SYNTHESIZED: [&str; 3] = [FTC, PID, PID_ROBUST_OBSERVER];
 /// Those that a campaign compares if it names none.
 pub const COMPARED: [&str; 3] = [FTC, PID, PID_TUNED];
 

@@ -11,16 +11,21 @@ mod group;
 pub(crate) mod kinds;
 pub mod lints;
 mod load;
+mod measure;
 mod overlay;
 mod parameter;
 mod plan;
 mod quantity;
 mod source;
 mod time;
+mod tune;
 mod validate;
 mod validated;
 
-pub use common::{BUILT_IN, COMPARED, Common, FTC, PID, PID_PLACED, PID_TUNED, Requirement};
+pub use common::{
+    BUILT_IN, COMPARED, Common, FTC, FTC_TUNED, PID, PID_PLACED, PID_ROBUST_OBSERVER, PID_TUNED,
+    Requirement, SYNTHESIZED,
+};
 pub use distribution::Distribution;
 pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
@@ -30,9 +35,11 @@ pub use group::{
     PidPlaced, PlacedPoles, Verdict,
 };
 pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
+pub use measure::{EpisodeNumber, LoopNumber, Measure, MeasuredChannels};
 pub use overlay::{Setting, SettingError};
 pub use parameter::{Parameter, SamplingScope};
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
 pub use time::{Time, Timing};
+pub use tune::{Bound, Limit, Side, Term, Tune};
 pub use validated::Campaign;

@@ -3,6 +3,8 @@
 use super::common::Common;
 use super::disturbances_and_faults::Fault;
 use super::group::{AgentGroup, ChannelsOfCampaign, GroupParts};
+use super::plan::Sampling;
+use super::tune::Tune;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -14,6 +16,8 @@ pub struct Campaign {
     common: Arc<Common>,
     /// At least one; agents of one group never act on those of another.
     groups: Vec<AgentGroup>,
+    /// What `urts-mc tune` searches, if the file says it.
+    pub(super) tune: Option<Arc<Tune>>,
 }
 
 impl Deref for Campaign {
@@ -30,6 +34,7 @@ impl Campaign {
         let mut campaign = Self {
             common,
             groups: Vec::new(),
+            tune: None,
         };
         let mut before = [0; 3];
         for mut parts in groups {
@@ -44,6 +49,26 @@ impl Campaign {
             campaign.groups.push(AgentGroup::new(parts));
         }
         campaign
+    }
+
+    /// What `urts-mc tune` searches, if the file says it.
+    #[must_use]
+    pub fn tune(&self) -> Option<&Tune> {
+        self.tune.as_deref()
+    }
+
+    /// The same with so many independent episodes of another seed under these controllers, of which nothing is
+    /// required.
+    #[must_use]
+    pub(crate) fn drawn_anew(self, seed: u64, episodes: u32, controllers: Vec<String>) -> Self {
+        self.with(|parts| {
+            parts.seed = seed;
+            parts.episodes = episodes;
+            parts.controllers = controllers;
+            parts.sampling = Sampling::Independent;
+            parts.stop = None;
+            parts.requirements = Vec::new();
+        })
     }
 
     /// The groups of agents, in the file's order; a file without `[[group]]` is a single one.

@@ -1,10 +1,11 @@
 //! The command line: commands, their arguments and examples.
 
-use clap::builder::StyledStr;
+use clap::builder::{PossibleValuesParser, StyledStr};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use urts_mc::campaign::Setting;
+use urts_mc::run::tune::STRUCTURES;
 
 /// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
 #[derive(Debug, Parser)]
@@ -53,6 +54,12 @@ pub(crate) enum Command {
         "urts-mc check campaigns/smoke.toml --set sampling.design=sobol",
     ]))]
     Check(CheckArguments),
+    /// Search the free parameters of a controller for a campaign's [tune]
+    #[command(after_help = examples(&[
+        "urts-mc tune campaigns/smoke.toml --controller pid",
+        "urts-mc tune campaigns/smoke.toml --controller ftc --set tune.budget=26 --out reports/tuned",
+    ]))]
+    Tune(TuneArguments),
     /// Show the gains of a campaign: poles, margins, certificate, checks
     #[command(after_help = examples(&[
         "urts-mc synthesize campaigns/uav-paper.toml",
@@ -133,6 +140,41 @@ pub(crate) struct Overrides {
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) engine: EngineArguments,
+    /// Simulate N random episodes again on the CPU in f64, and fail if they
+    /// differ [default: 32 on a GPU, 0 on the CPU]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        verbatim_doc_comment
+    )]
+    pub(crate) cross_check: Option<u32>,
+    /// Output directory [default: reports/<name of the campaign>]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write even where the output directory holds something else,
+    /// and replace the file of --junit
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) overwrite: bool,
+    /// Write the episode and channel tables as CSV too
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write a JUnit file for CI systems: a test case for each [[require]],
+    /// the cross-check and the simulation
+    #[arg(long, value_name = "FILE", verbatim_doc_comment)]
+    pub(crate) junit: Option<PathBuf>,
+    /// Print nothing but errors and what --json asks for
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EngineArguments {
     /// Where to simulate: auto takes a hardware GPU if there is one,
     /// and the CPU otherwise
     #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
@@ -160,35 +202,30 @@ pub(crate) struct RunArguments {
         verbatim_doc_comment
     )]
     pub(crate) simd: SimdChoice,
-    /// Simulate N random episodes again on the CPU in f64, and fail if they
-    /// differ [default: 32 on a GPU, 0 on the CPU]
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        verbatim_doc_comment
-    )]
-    pub(crate) cross_check: Option<u32>,
     /// Threads; 0 takes all cores. The result is the same
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
     pub(crate) threads: u16,
-    /// Output directory [default: reports/<name of the campaign>]
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TuneArguments {
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// What is tuned: its free parameters are searched, whether the campaign
+    /// names it or not
+    #[arg(long, value_name = "NAME", verbatim_doc_comment, value_parser = PossibleValuesParser::new(STRUCTURES.iter().map(|own| own.name)))]
+    pub(crate) controller: String,
+    #[command(flatten)]
+    pub(crate) engine: EngineArguments,
+    /// Output directory [default: reports/<name of the campaign>-tune-<NAME>]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
-    /// Write even where the output directory holds something else,
-    /// and replace the file of --junit
-    #[arg(long, verbatim_doc_comment)]
-    pub(crate) overwrite: bool,
-    /// Write the episode and channel tables as CSV too
+    /// Write even where the output directory holds something else
     #[arg(long)]
-    pub(crate) csv: bool,
+    pub(crate) overwrite: bool,
     /// Print the findings as JSON on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write a JUnit file for CI systems: a test case for each [[require]],
-    /// the cross-check and the simulation
-    #[arg(long, value_name = "FILE", verbatim_doc_comment)]
-    pub(crate) junit: Option<PathBuf>,
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -11,6 +11,7 @@ use urts_mc::report::paper::PaperError;
 use urts_mc::run::RunError;
 use urts_mc::run::error::OutputError;
 use urts_mc::run::replay::ReplayError;
+use urts_mc::run::tune::TuneError;
 use urts_mc::simulation::SimulationError;
 use urts_mc::synthesis::SynthesisError;
 
@@ -96,6 +97,26 @@ impl Ends for RunError {
             Self::Output(error) => error.code(),
             Self::Simulation(error) => error.code(),
             Self::Interrupted { .. } | Self::Manifest(_) => Code::Other,
+        }
+    }
+
+    fn output(&self) -> Option<&OutputError> {
+        match self {
+            Self::Output(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl Ends for TuneError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Campaign(error) => error.code(),
+            Self::Gains(error) => error.code(),
+            Self::Output(error) => error.code(),
+            Self::Simulation(error) => error.code(),
+            Self::NoneFlies { .. } => Code::Synthesis,
+            Self::Json(error) => error.code(),
         }
     }
 

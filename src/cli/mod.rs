@@ -3,6 +3,7 @@
 mod arguments;
 mod completions;
 mod console;
+mod engine;
 pub(crate) mod exit;
 mod junit;
 mod progress;
@@ -11,8 +12,8 @@ pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
 
 use arguments::{
-    BackendChoice, CheckArguments, Command, DevicesArguments, Overrides, PlanArguments,
-    PrecisionChoice, ReplayArguments, RunArguments, SimdChoice, SynthesizeArguments,
+    CheckArguments, Command, DevicesArguments, Overrides, PlanArguments, ReplayArguments,
+    RunArguments, SynthesizeArguments, TuneArguments,
 };
 use completions::completions;
 use console::{print, print_json, print_note};
@@ -22,18 +23,18 @@ use progress::ProgressLine;
 use std::collections::BTreeMap;
 use std::path::Path;
 use urts_mc::backend::cpu::{Precision, Simd};
-use urts_mc::backend::gpu::{Tuning, adapters};
+use urts_mc::backend::gpu::adapters;
 use urts_mc::campaign::Campaign;
 use urts_mc::campaign::lints::cautions;
 use urts_mc::controllers::GainSet;
 use urts_mc::report::paper::{claim_dir, paper};
 use urts_mc::report::problems::{shortcoming, unmet};
-use urts_mc::report::{report, terminal, trace};
+use urts_mc::report::{report, terminal, trace, tuning};
 use urts_mc::run::directory::{OutputDir, OutputFile};
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
+use urts_mc::run::tune::{self, Structure};
 use urts_mc::run::{Extras, Findings, run};
-use urts_mc::simulation::{Backend, RunOptions};
 use urts_mc::synthesis::{Preset, synthesize};
 
 /// Carries out a command.
@@ -60,6 +61,7 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
     match command {
         Command::Run(arguments) => run_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
+        Command::Tune(arguments) => tune_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
         Command::Report { run } => {
@@ -139,7 +141,12 @@ fn reported(report: Option<JunitFile>, name: &str, failure: Failure) -> Failure 
 impl RunArguments {
     /// Simulates a campaign into a directory and writes its report.
     fn simulate(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
-        let options = self.options()?;
+        let options = self.engine.options()?;
+        if options.precision == Precision::F64 && self.cross_check.is_some_and(|count| count > 0) {
+            return Err(Failure::usage(
+                "--cross-check: compares with f64, which this run is; leave it out".into(),
+            ));
+        }
         let out = OutputDir::claim(out, campaign, self.overwrite)?;
         let extras = Extras {
             csv: self.csv,
@@ -155,65 +162,36 @@ impl RunArguments {
         report(out.path())?;
         Ok(findings)
     }
+}
 
-    /// The options; options that contradict each other are refused.
-    fn options(&self) -> Result<RunOptions, Failure> {
-        let precision = match self.precision {
-            PrecisionChoice::F32 => Precision::F32,
-            PrecisionChoice::F64 => Precision::F64,
-        };
-        let simd = match self.simd {
-            SimdChoice::Auto => None,
-            SimdChoice::Scalar => Some(Simd::Scalar),
-            SimdChoice::Avx2 => Some(Simd::Avx2),
-            SimdChoice::Avx512 => Some(Simd::Avx512),
-        };
-        if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
-            let name = format!("{simd:?}").to_lowercase();
-            return Err(Failure::usage(format!(
-                "--simd {name}: this processor lacks it; use auto"
-            )));
-        }
-        let backend = match (self.backend, &self.adapter) {
-            (BackendChoice::Gpu, adapter) => Backend::Gpu {
-                adapter: adapter.clone(),
-            },
-            (_, Some(name)) => {
-                return Err(Failure::usage(format!(
-                    "--adapter {name}: only a GPU has adapters; add --backend gpu"
-                )));
-            }
-            (BackendChoice::Auto, None) => Backend::Auto,
-            (BackendChoice::Cpu, None) => Backend::Cpu,
-        };
-        if self.backend == BackendChoice::Gpu && precision == Precision::F64 {
-            return Err(Failure::usage(
-                "--precision f64: the shaders are in single precision; use --backend cpu".into(),
-            ));
-        }
-        if self.backend == BackendChoice::Gpu && simd.is_some() {
-            return Err(Failure::usage(
-                "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
-            ));
-        }
-        if precision == Precision::F64 && simd.is_some() {
-            return Err(Failure::usage(
-                "--simd: lays out episodes in single precision; leave it out, or use --precision f32".into(),
-            ));
-        }
-        if precision == Precision::F64 && self.cross_check.is_some_and(|count| count > 0) {
-            return Err(Failure::usage(
-                "--cross-check: compares with f64, which this run is; leave it out".into(),
-            ));
-        }
-        Ok(RunOptions {
-            backend,
-            precision,
-            simd,
-            threads: usize::from(self.threads),
-            tuning: Tuning::default(),
-        })
+fn tune_command(arguments: &TuneArguments) -> Result<Code, Failure> {
+    let campaign = arguments.overrides.load()?;
+    let options = arguments.engine.options()?;
+    let asked = tune::asked(&campaign)?;
+    let name = &arguments.controller;
+    let structure = Structure::named(name)
+        .ok_or_else(|| Failure::usage(format!("--controller {name}: unknown")))?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("reports").join(format!("{}-tune-{name}", campaign.name)));
+    let dir = tune::claim(&out, &campaign, arguments.overwrite)?;
+    let shown = ProgressLine::of_search(asked.budget, arguments.quiet);
+    let found = tune::tune(&campaign, structure, &options, &|tried, best| {
+        shown.tell_best(tried, best);
+    });
+    drop(shown);
+    let found = found?;
+    tune::write(&found, &dir)?;
+    for (name, page) in tune::PAGES.into_iter().zip(tuning(&found)) {
+        dir.write(name, page.as_bytes())?;
     }
+    if arguments.json {
+        print_json(&tune::json(&found)?)?;
+    } else if !arguments.quiet {
+        print(&terminal::tuning(&found, &out))?;
+    }
+    Ok(Code::Done)
 }
 
 fn plan_command(arguments: &PlanArguments) -> Result<Code, Failure> {

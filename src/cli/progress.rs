@@ -6,6 +6,7 @@ use std::io::{IsTerminal, stderr};
 use std::time::Duration;
 use urts_mc::campaign::Campaign;
 use urts_mc::run::Progress;
+use urts_mc::run::tune::Evaluation;
 
 /// A line on standard error that says what goes on, with rate and time left of a simulation. It is shown on a terminal
 /// only, and taken away at the end.
@@ -22,6 +23,28 @@ impl ProgressLine {
             bar: line(u64::from(campaign.episodes), quiet),
             may_stop: campaign.stop.is_some(),
         }
+    }
+
+    /// A search among so many candidates.
+    pub(super) fn of_search(budget: u32, quiet: bool) -> Self {
+        let bar = line(u64::from(budget), quiet);
+        bar.set_message("synthesizing gains");
+        Self {
+            bar,
+            may_stop: false,
+        }
+    }
+
+    /// Shows how far a search is.
+    pub(super) fn tell_best(&self, tried: u32, best: &Evaluation) {
+        let limits = match best.holds_all() {
+            true => "all limits hold".to_string(),
+            false => format!("limits exceeded by {:.2} in logarithms", best.excess),
+        };
+        self.bar.set_style(of_search());
+        self.bar.set_position(u64::from(tried));
+        self.bar
+            .set_message(format!("best {:.4e}, {limits}", best.objective));
     }
 
     /// Work of unknown length.
@@ -74,6 +97,13 @@ fn line(length: u64, quiet: bool) -> ProgressBar {
 fn of_work() -> ProgressStyle {
     ProgressStyle::with_template("{spinner} {msg}, {elapsed}")
         .unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
+fn of_search() -> ProgressStyle {
+    ProgressStyle::with_template(
+        "{spinner} {bar:32} {human_pos}/{human_len} candidates, {msg}, {eta} left",
+    )
+    .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 fn of_flight(may_stop: bool) -> ProgressStyle {

@@ -72,15 +72,15 @@ fn late(group: &AgentGroup, gains: &GainSet) -> Option<String> {
 fn unreached(group: &AgentGroup, gains: &GainSet) -> Vec<String> {
     let of_controller = gains.controllers.iter().flat_map(|controller| {
         let channels = group.channel_groups().into_iter();
-        let channels = channels.zip(&controller.groups).zip(&group.synthesis.designs);
-        channels.filter_map(move |((channels, own), design)| {
+        let channels = channels.zip(&controller.groups);
+        channels.filter_map(move |(channels, own)| {
             let certificate = own.certificate()?;
             (!certificate.meets_design_rho).then(|| {
                 format!(
                     "{} on {}: the weights ask for an attenuation of rho = {}, the gains certify {:.3} only",
                     controller.name,
                     group.titled(channels.role.name()),
-                    design.rho,
+                    own.design.rho,
                     certificate.rho
                 )
             })

@@ -1,10 +1,10 @@
 //! gains.json: what a run writes, and what a campaign may take instead of a synthesis.
 
 use super::error::GainsError;
-use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController, integrable};
+use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController};
 use crate::agent::{ChannelGroup, ChannelRole};
 use crate::campaign::{AgentGroup, Campaign};
-use crate::synthesis::{ChannelDesign, ControllerGains, SynthesisError, verify};
+use crate::synthesis::{ChannelDesign, ControllerGains};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,7 +21,10 @@ pub struct GainsFile {
     /// Where the numbers are from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    /// The designs that the gains belong to; not read.
+    /// How they were searched, where they were; not read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<serde_json::Value>,
+    /// The designs of the campaign; not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub designs: Option<serde_json::Value>,
     /// The controllers by name.
@@ -50,6 +53,9 @@ pub struct ControllerFile {
     /// Where the numbers are from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+    /// The designs that its gains belong to, by channel group, where they are not those of the campaign.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub designs: BTreeMap<String, ChannelDesign>,
     /// Gains of a UAV's position channels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<ControllerGains>,
@@ -80,6 +86,7 @@ pub(super) fn of(gains: &[GainSet], campaign: &Campaign) -> GainsFile {
     let mut file = GainsFile {
         format: FORMAT,
         source: None,
+        provenance: None,
         designs: None,
         controllers: BTreeMap::new(),
         groups: BTreeMap::new(),
@@ -103,8 +110,15 @@ fn of_group(gains: &GainSet, group: &AgentGroup) -> GroupGains {
     };
     let controllers = gains.controllers.iter().map(|controller| {
         let findings = controller.groups.iter().map(|own| json(&own.findings));
+        let own = channels
+            .iter()
+            .zip(&controller.groups)
+            .zip(&group.synthesis.designs);
+        let own = own.filter(|((_, own), design)| own.design != **design);
+        let designs = own.map(|((of, own), _)| (of.role.name().to_string(), own.design.clone()));
         let mut file = ControllerFile {
             source: Some(controller.source.clone()),
+            designs: designs.collect(),
             position: None,
             attitude: None,
             joints: None,
@@ -126,11 +140,15 @@ fn json(value: &impl Serialize) -> serde_json::Value {
     serde_json::to_value(value).unwrap_or_default()
 }
 
+/// The text of a gains.json.
+pub(super) fn text_of(path: &Path) -> Result<String, GainsError> {
+    std::fs::read_to_string(path)
+        .map_err(|error| broken(path, format!("cannot be read ({error}); name a gains.json")))
+}
+
 /// Reads a gains.json.
-fn read(path: &Path) -> Result<GainsFile, GainsError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| broken(path, format!("cannot be read ({error}); name a gains.json")))?;
-    let file: GainsFile = serde_json::from_str(&text).map_err(|error| {
+fn read(path: &Path, text: &str) -> Result<GainsFile, GainsError> {
+    let file: GainsFile = serde_json::from_str(text).map_err(|error| {
         broken(
             path,
             format!("{error}; write it as the gains.json of a run"),
@@ -154,15 +172,15 @@ fn broken(path: &Path, reason: String) -> GainsError {
     }
 }
 
-/// A controller of a group of agents from a file; its gains are verified if `check`.
+/// A controller of a group of agents from a file and its text; its gains are verified if `check`.
 pub(super) fn controller(
     group: &AgentGroup,
     name: &str,
-    path: &Path,
+    (path, text): (&Path, &str),
     controller: &str,
     check: bool,
 ) -> Result<SimulatedController, GainsError> {
-    let mut file = read(path)?;
+    let mut file = read(path, text)?;
     let of_group = file.groups.remove(&*group.name);
     let mut controllers = of_group.map_or(file.controllers, |own| own.controllers);
     let Some(mut found) = controllers.remove(controller) else {
@@ -193,25 +211,21 @@ pub(super) fn controller(
             );
             broken(path, reason)
         })?;
+        let design = found.designs.get(role).unwrap_or(design);
         let refused = |source| GainsError::Refused {
             path: path.to_path_buf(),
             controller: controller.to_string(),
             channels: role.to_string(),
             source: Box::new(source),
         };
-        let loop_gains = integrable(design, &gains).map_err(refused)?;
         let findings = if check {
-            Some(verified(design, &gains).map_err(refused)?)
+            Some(Findings::of(design, &gains).map_err(refused)?)
         } else {
             // A run that wrote them in another form is simulated all the same.
             let written = written.as_ref().and_then(|findings| findings.get(role));
             written.and_then(|findings| Findings::deserialize(findings).ok())
         };
-        Ok::<_, GainsError>(ChannelController {
-            gains,
-            loop_gains,
-            findings,
-        })
+        ChannelController::new(design.clone(), gains, findings).map_err(refused)
     };
     let channels = group.channel_groups().into_iter();
     let groups: Vec<ChannelController> = channels
@@ -232,16 +246,5 @@ pub(super) fn controller(
         name: name.to_string(),
         source: format!("{} ({controller})", path.display()),
         groups,
-    })
-}
-
-/// What the verification of gains from a file finds.
-fn verified(design: &ChannelDesign, gains: &ControllerGains) -> Result<Findings, SynthesisError> {
-    let verified = verify(design, gains)?;
-    Ok(Findings {
-        analysis: verified.analysis,
-        certificate: verified.certificate,
-        checks: verified.checks,
-        solver: Vec::new(),
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::synthesis::{
     Certificate, ChannelDesign, Check, ControllerGains, LoopAnalysis, LoopGains, SolverReport,
-    SynthesisError, loop_gains,
+    SynthesisError, Verified, loop_gains, verify,
 };
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,8 @@ impl SimulatedController {
 /// A controller on one channel group.
 #[derive(Debug, Clone)]
 pub struct ChannelController {
+    /// The weights and the smoothing model that the gains belong to.
+    pub design: ChannelDesign,
     /// The gains as designed.
     pub gains: ControllerGains,
     /// The gains as integrated.
@@ -45,6 +47,23 @@ pub struct ChannelController {
 }
 
 impl ChannelController {
+    /// A controller of gains that are found to be sound.
+    ///
+    /// # Errors
+    /// If episodes cannot integrate them.
+    pub fn new(
+        design: ChannelDesign,
+        gains: ControllerGains,
+        findings: Option<Findings>,
+    ) -> Result<Self, SynthesisError> {
+        Ok(Self {
+            loop_gains: integrable(&design, &gains)?,
+            design,
+            gains,
+            findings,
+        })
+    }
+
     /// The certificate of its gains, where it has one that is at hand.
     #[must_use]
     pub fn certificate(&self) -> Option<&Certificate> {
@@ -67,6 +86,27 @@ pub struct Findings {
     pub solver: Vec<SolverReport>,
 }
 
+impl Findings {
+    /// What verification finds about gains that were not designed here.
+    ///
+    /// # Errors
+    /// If they do not pass.
+    pub fn of(design: &ChannelDesign, gains: &ControllerGains) -> Result<Self, SynthesisError> {
+        verify(design, gains).map(Self::from)
+    }
+}
+
+impl From<Verified> for Findings {
+    fn from(verified: Verified) -> Self {
+        Self {
+            analysis: verified.analysis,
+            certificate: verified.certificate,
+            checks: verified.checks,
+            solver: Vec::new(),
+        }
+    }
+}
+
 impl GainSet {
     /// The gains of each group as the episode loop takes them, `[group][controller][channel group]`.
     #[must_use]
@@ -86,7 +126,7 @@ impl GainSet {
 }
 
 /// The gains as integrated; what the loop leaves out must be zero.
-pub(super) fn integrable(
+fn integrable(
     design: &ChannelDesign,
     gains: &ControllerGains,
 ) -> Result<LoopGains, SynthesisError> {

@@ -1,6 +1,7 @@
 //! From a campaign to the gains of its controllers: synthesized, or from a file and verified the same way; and
 //! gains.json.
 
+mod built_in;
 mod cautions;
 mod error;
 mod file;
@@ -8,8 +9,8 @@ mod gain_set;
 mod load;
 mod step;
 
+pub use built_in::{fault_tolerant, synthesized};
 pub use cautions::cautions;
 pub use error::GainsError;
 pub use file::{ControllerFile, GainsFile, GroupGains};
 pub use gain_set::{ChannelController, Findings, GainSet, SimulatedController};
-pub use load::built_in;

@@ -6,33 +6,38 @@ use crate::campaign::{AgentGroup, CampaignError, RandomQuantity};
 use crate::synthesis::poles;
 use nalgebra::Complex;
 
-/// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
-pub(super) fn check_step(gains: &GainSet, group: &AgentGroup) -> Result<(), CampaignError> {
-    let step_s = group.time.step_s;
-    let of_controllers = gains.controllers.iter().flat_map(|controller| {
-        let poles = controller
-            .groups
-            .iter()
-            .flat_map(|channel| poles(&channel.loop_gains));
-        poles.map(move |pole| (pole, format!("{:?}", controller.name)))
-    });
-    let of_plant = plant_poles(group)
-        .into_iter()
-        .map(|(pole, of)| (Complex::new(pole, 0.0), of.to_string()));
-    let worst = of_controllers
-        .chain(of_plant)
-        .map(|(pole, of)| (longest_stable_step(pole), of, pole))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
-    match worst {
-        Some((limit_s, of, pole)) if step_s > limit_s => {
-            let limit = format!(
-                "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {of}",
-                pole.re, pole.im
-            );
-            let remedy = format!("use {:.1e} or less", limit_s / 2.0);
-            Err(group.invalid("time.step_s", step_s, &limit, &remedy))
+impl GainSet {
+    /// Refuses a step at which the Runge-Kutta method would not be stable on the closed loop.
+    ///
+    /// # Errors
+    /// If the step is too long, with the longest that is not.
+    pub fn check_step(&self, group: &AgentGroup) -> Result<(), CampaignError> {
+        let step_s = group.time.step_s;
+        let of_controllers = self.controllers.iter().flat_map(|controller| {
+            let poles = controller
+                .groups
+                .iter()
+                .flat_map(|channel| poles(&channel.loop_gains));
+            poles.map(move |pole| (pole, format!("{:?}", controller.name)))
+        });
+        let of_plant = plant_poles(group)
+            .into_iter()
+            .map(|(pole, of)| (Complex::new(pole, 0.0), of.to_string()));
+        let worst = of_controllers
+            .chain(of_plant)
+            .map(|(pole, of)| (longest_stable_step(pole), of, pole))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((limit_s, of, pole)) if step_s > limit_s => {
+                let limit = format!(
+                    "above {limit_s:.2e} s the integration is unstable at the pole {:.1} {:+.1}i 1/s of {of}",
+                    pole.re, pole.im
+                );
+                let remedy = format!("use {:.1e} or less", limit_s / 2.0);
+                Err(group.invalid("time.step_s", step_s, &limit, &remedy))
+            }
+            _ => Ok(()),
         }
-        _ => Ok(()),
     }
 }
 

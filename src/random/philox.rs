@@ -56,6 +56,10 @@ pub enum Stream {
     Intermittent = 8,
     /// The noise that drives turbulence, step by step.
     Turbulence = 9,
+    /// The candidates of a search.
+    Search = 10,
+    /// The seeds of episodes that are drawn beside a campaign's own.
+    Seed = 11,
 }
 
 /// Where a random number lives inside its campaign's seed.

@@ -12,9 +12,11 @@ pub mod problems;
 mod run_data;
 pub(crate) mod section;
 pub mod terminal;
+mod tuning;
 
 pub use episode::{Trace, trace};
 pub use run_data::ReportError;
+pub use tuning::tuning;
 
 use crate::results::how_sure;
 use crate::run::directory::OutputDir;

@@ -120,6 +120,8 @@ pub fn fairness_table(terms: &[Terms]) -> Table {
             .real_if("phase_margin_deg", margin(|own| own.phase_margin_deg))
             .real_if("delay_margin_ms", margin(|own| own.delay_margin_ms))
             .real_if("sensitivity_peak", margin(|own| own.sensitivity_peak))
+            .real_if("noise_peak", margin(|own| own.noise_peak))
+            .real_if("noise_h2", margin(|own| own.noise_h2))
             .real_if("peak_command_p95", own.peak_command_p95)
             .real_if("effort_p50", own.effort_p50)
             .real_if("saturated_share", own.saturated_share);

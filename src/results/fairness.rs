@@ -131,6 +131,7 @@ fn differences(own: &Terms, other: &Terms) -> Vec<String> {
     of_margins("crossover", "rad/s", |own| own.crossover_rad_s);
     of_margins("delay margin", "ms", |own| own.delay_margin_ms);
     of_margins("peak of the sensitivity", "", |own| own.sensitivity_peak);
+    of_margins("peak gain from noise", "", |own| own.noise_peak);
     compare(
         "largest command (95th percentile)",
         "N or N m",

@@ -13,6 +13,7 @@ mod all;
 mod columns;
 pub mod fairness;
 pub mod files;
+pub mod measures;
 mod paired;
 mod replicates;
 mod requirements;

@@ -24,10 +24,41 @@ impl OutputDir {
     /// # Errors
     /// If the directory holds something else or cannot be written. Nothing is left behind then.
     pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
-        let taken = |what: String| OutputError::Taken {
-            path: path.to_path_buf(),
-            what,
+        let other = match Manifest::read(path) {
+            Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
+                let what = if run.campaign == campaign.text {
+                    "this campaign with other settings"
+                } else {
+                    "another campaign text"
+                };
+                Some(format!("a run of {what} ({:?})", run.name))
+            }
+            Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => Some(
+                format!("a run of {} episodes with seed {}", run.episodes, run.seed),
+            ),
+            Ok(_) => return Self::claim_for(path, overwrite, &|_| true, None),
+            Err(_) => None,
         };
+        let whole = |name: &str| {
+            let whole = name
+                .strip_prefix('.')
+                .and_then(|name| name.strip_suffix(".part"));
+            is_ours(whole.unwrap_or(name))
+        };
+        Self::claim_for(path, overwrite, &whole, other)
+    }
+
+    /// The same of a directory that may hold files of some names only; `other` is what it holds instead, where that is
+    /// known.
+    ///
+    /// # Errors
+    /// As [`OutputDir::claim`].
+    pub fn claim_for(
+        path: &Path,
+        overwrite: bool,
+        is_own: &dyn Fn(&str) -> bool,
+        other: Option<String>,
+    ) -> Result<Self, OutputError> {
         let unwritable = |source| OutputError::Unwritable {
             path: path.to_path_buf(),
             source,
@@ -35,28 +66,15 @@ impl OutputDir {
         if path.exists() && !path.is_dir() {
             return Err(unwritable(ErrorKind::NotADirectory.into()));
         }
-        let occupied =
-            path.is_dir() && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
-        if occupied && !overwrite {
-            match Manifest::read(path) {
-                Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
-                    let what = if run.campaign == campaign.text {
-                        "this campaign with other settings"
-                    } else {
-                        "another campaign text"
-                    };
-                    return Err(taken(format!("a run of {what} ({:?})", run.name)));
-                }
-                Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => {
-                    return Err(taken(format!(
-                        "a run of {} episodes with seed {}",
-                        run.episodes, run.seed
-                    )));
-                }
-                Ok(_) => {}
-                Err(_) if holds_only_ours(path) => {}
-                Err(_) => return Err(taken("files, but no finished run".into())),
-            }
+        let entries = fs::read_dir(path).into_iter().flatten().flatten();
+        let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let foreign = names.any(|name| !is_own(&name));
+        let what = other.or(foreign.then(|| "files, but no finished run".to_string()));
+        if let Some(what) = what.filter(|_| !overwrite) {
+            return Err(OutputError::Taken {
+                path: path.to_path_buf(),
+                what,
+            });
         }
         try_to_write(path).map_err(unwritable)?;
         Ok(Self(path.to_path_buf()))
@@ -351,18 +369,4 @@ fn resolved(dir: &Path) -> PathBuf {
         }
     }
     real
-}
-
-/// Whether a directory holds nothing but files that a run writes, such as one that was killed leaves.
-fn holds_only_ours(dir: &Path) -> bool {
-    let ours = |name: &str| {
-        let whole = name
-            .strip_prefix('.')
-            .and_then(|name| name.strip_suffix(".part"))
-            .unwrap_or(name);
-        is_ours(whole)
-    };
-    let entries = fs::read_dir(dir).into_iter().flatten().flatten();
-    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    names.all(|name| ours(&name))
 }

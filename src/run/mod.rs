@@ -7,6 +7,7 @@ pub mod replay;
 pub mod replay_files;
 pub(crate) mod table_reader;
 mod tables;
+pub mod tune;
 
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::Campaign;

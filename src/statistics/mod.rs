@@ -53,6 +53,7 @@ pub use effect::{Effect, Outcome, Permutations, effects};
 pub use holm::holm;
 pub use interval::{Estimate, Interval, LEVEL, SIGNIFICANCE};
 pub use median::median_bca;
+pub(crate) use normal::normal_quantile;
 pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval};

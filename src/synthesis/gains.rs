@@ -90,7 +90,9 @@ pub fn pid_gains(design: &ChannelDesign) -> Result<ControllerGains, SynthesisErr
 ///
 /// # Errors
 /// If a Riccati equation has no solution, which positive weights exclude.
-pub fn pid_tuned_gains(design: &ChannelDesign) -> Result<ControllerGains, SynthesisError> {
+pub fn pid_robust_observer_gains(
+    design: &ChannelDesign,
+) -> Result<ControllerGains, SynthesisError> {
     pid_with(design, 100.0, [1e-2, 1e-2, 1.0], 1e9)
 }
 

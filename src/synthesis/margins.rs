@@ -1,4 +1,4 @@
-//! Stability margins of one controller on one channel, loop broken at the plant input.
+//! Stability margins of one controller on one channel, loop broken at the plant input, and what it makes of noise.
 
 use super::channel::{Channel, error_channel};
 use super::gains::ControllerGains;
@@ -22,6 +22,12 @@ pub struct Margins {
     pub delay_margin_ms: f64,
     /// Gain crossover at which the delay margin is taken, rad/s.
     pub crossover_rad_s: f64,
+    /// Largest gain over all frequencies from noise on what is sensed, x and x', one unit on each, to the feedback
+    /// acceleration; the integral is computed and has none of its own.
+    pub noise_peak: f64,
+    /// The same in the root mean square: of white noise of unit density on x and on x', the standard deviation of the
+    /// feedback acceleration.
+    pub noise_h2: f64,
 }
 
 /// Margins of `gains` on a channel with as many states; `None` if the loop
@@ -32,6 +38,8 @@ pub(super) fn margins(channel: &Channel, gains: &ControllerGains) -> Option<Marg
     let sensitivity = |omega: f64| Some((loop_gain(omega)? + 1.0).norm().recip());
     let grid = sweep();
     let (_, sensitivity_peak) = peak(&grid, sensitivity)?;
+    let noise = |omega: f64| response.of_noise(omega);
+    let (_, noise_peak) = peak(&grid, noise)?;
 
     let mut phase_margin_rad = f64::INFINITY;
     let mut delay_margin_s = f64::INFINITY;
@@ -64,7 +72,21 @@ pub(super) fn margins(channel: &Channel, gains: &ControllerGains) -> Option<Marg
         phase_margin_deg: phase_margin_rad.to_degrees(),
         delay_margin_ms: delay_margin_s * 1e3,
         crossover_rad_s: crossover_rad_s?,
+        noise_peak,
+        noise_h2: root_of_power(&grid, noise)?,
     })
+}
+
+/// The H2 norm of a response of this size: the root of its squared size, integrated over all positive frequencies and
+/// divided by pi. Below the grid it is taken as constant, above it as falling with the frequency.
+fn root_of_power(grid: &[f64], size: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    // Over the logarithm of the frequency, in which the grid is even.
+    let density = |&omega: &f64| Some(omega * size(omega)?.powi(2));
+    let samples: Vec<f64> = grid.iter().map(density).collect::<Option<_>>()?;
+    let pairs = grid.windows(2).zip(samples.windows(2));
+    let within = pairs.map(|(at, of)| (at[1] / at[0]).ln() * f64::midpoint(of[0], of[1]));
+    let beyond = samples.first()? + samples.last()?;
+    Some(((within.sum::<f64>() + beyond) / PI).sqrt())
 }
 
 /// The loop gain with the sign of negative feedback.
@@ -89,11 +111,25 @@ impl LoopGain {
     }
 
     fn at(&self, omega: f64) -> Option<Complex<f64>> {
-        let error = resolvent(&self.plant.a.map(Complex::from), omega)
-            .solve(&self.plant.b.map(Complex::from))?;
-        // u = K (jw - Abar - Bbar K - L Cbar)^-1 (-L) y, with y = C0 e.
-        let estimate = resolvent(&self.observer, omega).solve(&(&self.l * error))?;
-        Some((&self.k * estimate)[(0, 0)])
+        Some((self.of_measurements(omega)? * self.of_error(omega)?)[(0, 0)])
+    }
+
+    /// The size of the closed loop's response u / noise, noise on x and x'.
+    fn of_noise(&self, omega: f64) -> Option<f64> {
+        let open = self.of_measurements(omega)?;
+        let gain = (&open * self.of_error(omega)?)[(0, 0)];
+        Some(open.columns(1, 2).norm() / (gain + 1.0).norm())
+    }
+
+    /// The measurements (3 x 1) in answer to the feedback acceleration.
+    fn of_error(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
+        let plant = resolvent(&self.plant.a.map(Complex::from), omega);
+        plant.solve(&self.plant.b.map(Complex::from))
+    }
+
+    /// The negative feedback acceleration in answer to each measurement (1 x 3): K (jw - Abar - Bbar K - L Cbar)^-1 L.
+    fn of_measurements(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
+        Some(&self.k * resolvent(&self.observer, omega).solve(&self.l)?)
     }
 }
 

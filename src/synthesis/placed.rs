@@ -1,8 +1,6 @@
 //! A PID by the placement of its poles: one number, which anyone can choose.
 
 use super::channel::{ERROR_STATES, error_channel};
-use super::design::ChannelDesign;
-use super::error::{Step, SynthesisError};
 use super::gains::ControllerGains;
 use super::margins::margins;
 use nalgebra::DMatrix;
@@ -23,16 +21,9 @@ pub fn placed_gains(poles_rad_s: f64, observer_rad_s: f64) -> ControllerGains {
 }
 
 /// The poles, rad/s, of the fastest placed PID that still has a delay margin, ms: the faster it is, the smaller is its
-/// margin.
-///
-/// # Errors
-/// If no such PID has its poles in [`PLACED_RAD_S`], or the design is not one.
-pub fn poles_for_delay_margin(
-    design: &ChannelDesign,
-    delay_margin_ms: f64,
-    observer_rad_s: f64,
-) -> Result<f64, SynthesisError> {
-    design.validate()?;
+/// margin. None if no such PID has its poles in [`PLACED_RAD_S`].
+#[must_use]
+pub fn poles_for_delay_margin(delay_margin_ms: f64, observer_rad_s: f64) -> Option<f64> {
     let channel = error_channel();
     let margin = |poles_rad_s: f64| {
         let found = margins(&channel, &placed_gains(poles_rad_s, observer_rad_s));
@@ -40,10 +31,7 @@ pub fn poles_for_delay_margin(
     };
     let [mut slow, mut fast] = PLACED_RAD_S;
     if margin(slow) < delay_margin_ms || margin(fast) >= delay_margin_ms {
-        return Err(SynthesisError::NotConverged {
-            step: Step::Pid,
-            what: "a placed PID of this delay margin",
-        });
+        return None;
     }
     while fast / slow > 1.0 + 1e-12 {
         let middle = (slow * fast).sqrt();
@@ -53,5 +41,5 @@ pub fn poles_for_delay_margin(
             fast = middle;
         }
     }
-    Ok(slow)
+    Some(slow)
 }

@@ -103,7 +103,7 @@ pub(super) fn verify_with_report(
 const NORM_RATIO_LIMIT: f64 = 1.0 + 1e-6;
 
 /// Poles, which must be stable, and margins.
-fn analyse(
+pub(super) fn analyse(
     design: &ChannelDesign,
     gains: &ControllerGains,
 ) -> Result<(LoopAnalysis, Vec<Check>), SynthesisError> {

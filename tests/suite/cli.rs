@@ -14,6 +14,7 @@ mod results;
 mod settings;
 mod terminal;
 mod traces;
+mod tune;
 mod usage;
 
 use crate::common::repository;
@@ -74,7 +75,8 @@ impl Place {
         let mut command = Command::new(env!("CARGO_BIN_EXE_urts-mc"));
         command.current_dir(self.0.path()).args(arguments);
         // What these tests hold is the same on a machine with a GPU; those of the GPU name it.
-        if arguments.first() == Some(&"run") && !arguments.contains(&"--backend") {
+        let simulates = ["run", "tune"].contains(arguments.first().unwrap_or(&""));
+        if simulates && !arguments.contains(&"--backend") {
             command.args(["--backend", "cpu"]);
         }
         command

@@ -1,3 +1,5 @@
-//! The directory of a run.
+//! The directory of a run, and the search for parameters.
 
+mod cma_es;
 mod digests;
+mod tune;

@@ -10,14 +10,15 @@ use urts_mc::agent::ChannelRole;
 use urts_mc::synthesis::{
     ChannelDesign, ChannelSynthesis, ControllerGains, LOOP_STATES, Preset, Smoothing,
     SmoothingRule, Step, SynthesisError, Verified, augmented_channel, feedback_riccati,
-    geometric_q2, loop_gains, observer_riccati, pid_gains, pid_tuned_gains, poles, synthesize,
-    verify,
+    geometric_q2, loop_gains, observer_riccati, pid_gains, pid_robust_observer_gains, poles,
+    synthesize, verify,
 };
 
 mod certificate;
 mod designs;
 mod lapack;
 mod loop_form;
+mod pid_shape;
 mod placed;
 mod reference;
 mod refusals;

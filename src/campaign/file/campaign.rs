@@ -4,7 +4,8 @@
 use super::value::{some_table, table, tables};
 use super::{
     AgentFile, ControlFile, CouplingFile, DisturbanceFile, FaultFile, InitialFile, ReferenceFile,
-    RequireFile, SamplingFile, StopFile, StratumFile, SynthesisFile, TimeFile, VerdictFile,
+    RequireFile, SamplingFile, StopFile, StratumFile, SynthesisFile, TimeFile, TuneFile,
+    VerdictFile,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -95,8 +96,8 @@ campaign_and_group! {
         seed: u64,
         /// Number of episodes.
         episodes: u32,
-        /// Controllers to compare, all on the same draws: "ftc", "pid", "pid-tuned", "pid-placed" or a name under
-        /// `[synthesis.named]`.
+        /// Controllers to compare, all on the same draws: "ftc", "ftc-tuned", "pid", "pid-placed", "pid-tuned",
+        /// "pid-robust-observer" or a name under `[synthesis.named]`.
         controllers: Option<Vec<String>>,
         /// Duration and step.
         #[serde(deserialize_with = "table")]
@@ -113,6 +114,9 @@ campaign_and_group! {
         /// Conditions on the result; one that does not hold makes the run exit with 4.
         #[serde(default, deserialize_with = "tables")]
         require: Vec<RequireFile>,
+        /// What `urts-mc tune` searches.
+        #[serde(default, deserialize_with = "some_table")]
+        tune: Option<TuneFile>,
         /// Groups of agents that are simulated in one episode, each with tables of its own; without them the tables of
         /// the only group stand at the top.
         #[serde(default, deserialize_with = "tables")]

@@ -5,12 +5,14 @@ mod campaign;
 mod disturbances_and_faults;
 mod parameters;
 mod plan;
+mod tune;
 mod value;
 
 pub use campaign::{CampaignFile, GroupFile};
 pub use disturbances_and_faults::*;
 pub(super) use parameters::Parameters;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
+pub use tune::{Texts, TuneFile};
 pub(super) use value::in_toml;
 pub use value::{ChannelsFile, DistributionFile, NormalFile, Numbers, TruncatedNormalFile, Value};
 
@@ -199,7 +201,7 @@ pub enum FootFile {
 pub struct SynthesisFile {
     /// The weights: "uav-paper" or "uav-physical" of a UAV, "biped-paper" of a biped.
     pub preset: Option<String>,
-    /// A gains.json that replaces the synthesized gains of "ftc", "pid" and "pid-tuned".
+    /// A gains.json that replaces the gains of all controllers that need no file of their own.
     pub gains: Option<String>,
     /// How the controller "pid-placed" is placed (default: with the delay margin of "ftc").
     #[serde(default, rename = "pid-placed", deserialize_with = "some_table")]
@@ -224,7 +226,8 @@ pub struct SynthesisFile {
 pub struct PidPlacedFile {
     /// The poles of its error lie at minus this, rad/s.
     pub poles_rad_s: Option<f64>,
-    /// They lie where its delay margin is that of this controller: "ftc" (the default), "pid" or "pid-tuned".
+    /// They lie where its delay margin is that of this controller: "ftc" (the default), "pid" or
+    /// "pid-robust-observer".
     pub delay_margin_of: Option<String>,
     /// The poles of its observer lie at minus this, rad/s (default 800).
     pub observer_rad_s: Option<f64>,

@@ -11,6 +11,7 @@ mod reference;
 mod sampling;
 mod synthesis;
 mod timing;
+mod tune;
 
 use super::check::Check;
 use super::common::Common;
@@ -22,6 +23,7 @@ use super::time::Time;
 use super::validated::Campaign;
 use group::{Begun, MAX_AGENTS, RobotTexts};
 use std::sync::Arc;
+use synthesis::known_controllers;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
@@ -50,6 +52,8 @@ pub(super) fn validate(
     let faults: Vec<(Arc<str>, bool)> = begun.iter().flat_map(Begun::faults).collect();
     let strata = check.strata(&file.strata, &faults, file.episodes)?;
     let sampling = check.sampling(&file, begun.iter().map(Begun::entries).max())?;
+    let known = known_controllers(&synthesis);
+    let tune = file.tune.take();
     let common = Arc::new(Common {
         path: source.path.to_path_buf(),
         text: source.text.to_string(),
@@ -65,8 +69,10 @@ pub(super) fn validate(
         sampling,
     });
     let groups = begun.into_iter().map(|group| group.finish(&common));
-    let campaign = Campaign::new(common.clone(), groups.collect::<Result<_, _>>()?);
+    let mut campaign = Campaign::new(common.clone(), groups.collect::<Result<_, _>>()?);
     check.can_prove(&campaign)?;
+    let tune = tune.map(|tune| check.tune(&tune, &campaign, &known));
+    campaign.tune = tune.transpose()?.map(Arc::new);
     Ok(campaign)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::agent::{ActuationKind, Agent, ChannelRole};
 use crate::campaign::check::Check;
-use crate::campaign::common::{BUILT_IN, COMPARED, FTC};
+use crate::campaign::common::{BUILT_IN, COMPARED, FTC, SYNTHESIZED};
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::group::{GainSource, NamedGains, PidPlaced, PlacedPoles};
@@ -12,6 +12,25 @@ use crate::util::suggest::did_you_mean;
 /// Poles of the observer of "pid-placed", rad/s: so fast that it shows what is measured, so slow that a step of 2 ms
 /// resolves it.
 const OBSERVER_RAD_S: f64 = 800.0;
+
+/// The controllers that a campaign can name: those that need no file, and those that every group has a file for.
+pub(super) fn known_controllers(sources: &[&GainSource]) -> Vec<String> {
+    let named = sources.first().map_or(&[][..], |source| &source.named);
+    let named = named.iter().map(|named| named.name.clone());
+    let everywhere = named.filter(|name| sources.iter().all(|source| source.names(name)));
+    BUILT_IN
+        .into_iter()
+        .map(String::from)
+        .chain(everywhere)
+        .collect()
+}
+
+impl GainSource {
+    /// Whether it names a file for a controller.
+    fn names(&self, controller: &str) -> bool {
+        self.named.iter().any(|named| named.name == controller)
+    }
+}
 
 impl Check<'_> {
     /// Where the gains come from.
@@ -114,12 +133,13 @@ impl Check<'_> {
             (Some(poles_rad_s), None) => PlacedPoles::At(within("poles_rad_s", poles_rad_s)?),
             (None, margin_of) => {
                 let margin_of = margin_of.unwrap_or(FTC);
-                if !COMPARED.contains(&margin_of) {
+                let known = SYNTHESIZED;
+                if !known.contains(&margin_of) {
                     return Err(self.invalid(
                         format!("{table}.delay_margin_of"),
                         format!("{margin_of:?}"),
-                        &format!("the controllers that have one are {}", COMPARED.join(", ")),
-                        &did_you_mean(margin_of, COMPARED.iter().copied(), "take one of them"),
+                        &format!("the controllers that have one are {}", known.join(", ")),
+                        &did_you_mean(margin_of, known.iter().copied(), "take one of them"),
                     ));
                 }
                 PlacedPoles::DelayMarginOf(margin_of.to_string())
@@ -146,17 +166,7 @@ impl Check<'_> {
         names: Option<&[String]>,
         sources: &[&GainSource],
     ) -> Result<Vec<String>, CampaignError> {
-        let has = |source: &&GainSource, name: &String| {
-            source.named.iter().any(|named| named.name == *name)
-        };
-        let named = sources.first().map_or(&[][..], |source| &source.named);
-        let named = named.iter().map(|named| named.name.clone());
-        let named = named.filter(|name| sources.iter().all(|source| has(source, name)));
-        let known: Vec<String> = BUILT_IN
-            .into_iter()
-            .map(String::from)
-            .chain(named)
-            .collect();
+        let known = known_controllers(sources);
         let Some(names) = names else {
             let compared = |name: &&String| {
                 COMPARED.contains(&name.as_str()) || !BUILT_IN.contains(&name.as_str())
@@ -166,7 +176,7 @@ impl Check<'_> {
         if let Some(at) = names.iter().position(|name| !known.contains(name)) {
             let name = &names[at];
             let limit = format!("the controllers are {}", known.join(", "));
-            let remedy = match sources.iter().any(|source| has(source, name)) {
+            let remedy = match sources.iter().any(|source| source.names(name)) {
                 true => format!("give every group a [group.synthesis.named.{name}]"),
                 false => did_you_mean(name, known.iter().map(String::as_str), "take one of them"),
             };

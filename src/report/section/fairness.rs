@@ -14,6 +14,8 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
         "phase margin, deg",
         "delay margin, ms",
         "peak of S",
+        "noise gain, peak",
+        "noise gain, H2",
         "largest command, 95th percentile",
         "effort, median",
         "share of time at a limit",
@@ -27,6 +29,8 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
             number("phase_margin_deg"),
             number("delay_margin_ms"),
             number("sensitivity_peak"),
+            number("noise_peak"),
+            number("noise_h2"),
             number("peak_command_p95"),
             number("effort_p50"),
             Cell::number(format::rate(table.real(row, "saturated_share"), None)),
@@ -37,9 +41,10 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
     }
     let unlike = data.manifest.unlike.iter();
     let unlike = unlike.map(|own| Block::Text(format!("{own}.")));
-    let explained = "Bandwidth and margins are those of the loop of one channel, broken at the plant's input. The largest command is \
-                     that of any agent and channel of an episode, N or N m; the effort is the integral of its square, in the mean \
-                     over agents and channels. A smaller error on unlike terms is not the merit of the structure alone.";
+    let explained = "Bandwidth and margins are those of the loop of one channel, broken at the plant's input; noise gains lead \
+                     from x and x', a unit of noise on each, to the feedback acceleration. The largest command is that of any \
+                     agent and channel of an episode, N or N m; the effort is the integral of its square, in the mean over \
+                     agents and channels. A smaller error on unlike terms is not the merit of the structure alone.";
     let blocks = unlike.chain([Block::Grid(grid), Block::text(explained)]);
     Some(Section::new("On what terms", blocks.collect()))
 }

@@ -1,7 +1,7 @@
 //! Gains and what is known about them.
 
-use crate::campaign::{AgentGroup, Campaign, FTC, PID, PID_TUNED};
-use crate::controllers::{self, GainSet, SimulatedController, built_in};
+use crate::campaign::{AgentGroup, Campaign, SYNTHESIZED};
+use crate::controllers::{self, GainSet, SimulatedController, synthesized};
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::text::text;
 use crate::synthesis::{ChannelSynthesis, ControllerGains};
@@ -27,13 +27,13 @@ fn of_group(group: &AgentGroup, gains: &GainSet) -> String {
 }
 
 fn of_controller(group: &AgentGroup, controller: &SimulatedController) -> Section {
-    let designs = &group.synthesis.designs;
     // Channel groups with the same gains are said once.
     let mut said: Vec<(Vec<&str>, usize)> = Vec::new();
     let channels = group.channel_groups();
     for (index, (channels, own)) in channels.iter().zip(&controller.groups).enumerate() {
         let same = said.iter_mut().find(|(_, other)| {
-            designs[*other] == designs[index] && controller.groups[*other].gains == own.gains
+            let other = &controller.groups[*other];
+            other.design == own.design && other.gains == own.gains
         });
         match same {
             Some((names, _)) => names.push(channels.role.name()),
@@ -52,11 +52,12 @@ fn of_controller(group: &AgentGroup, controller: &SimulatedController) -> Sectio
 /// The gains of a preset's channel group and what is known about them.
 pub fn synthesis(role: &str, synthesis: &ChannelSynthesis) -> String {
     let of_controller = |name: &str| {
-        let (gains, findings) = built_in(synthesis, name);
-        Section::new(format!("{name}, {role}"), channel(&gains, Some(&findings)))
+        let (gains, findings) = synthesized(synthesis, name)?;
+        let blocks = channel(&gains, Some(&findings));
+        Some(Section::new(format!("{name}, {role}"), blocks))
     };
     text(&Document {
-        sections: [FTC, PID, PID_TUNED].map(of_controller).to_vec(),
+        sections: SYNTHESIZED.into_iter().filter_map(of_controller).collect(),
         ..Document::default()
     })
 }

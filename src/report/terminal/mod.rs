@@ -12,6 +12,7 @@ mod plan;
 mod replay;
 mod runs;
 mod screening;
+mod tuning;
 mod written;
 
 pub use crate::report::page::text::BAD;
@@ -21,4 +22,5 @@ pub use gains::{gains, synthesis};
 pub use plan::{plan, plan_json};
 pub use replay::{replay, replay_json};
 pub use runs::{runs, runs_json};
+pub use tuning::tuning;
 pub use written::{paper, report};

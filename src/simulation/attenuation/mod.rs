@@ -62,7 +62,7 @@ impl Start {
             let [taps1, taps2] = design.smoothing.taps();
             taps1.max(taps2) as f64 * design.smoothing.spacing_s
         };
-        let lasts_s = group.synthesis.designs.iter().map(last_tap);
+        let lasts_s = controller.groups.iter().map(|own| last_tap(&own.design));
         let steps = group.time.onset_step(lasts_s.fold(0.0, f64::max));
         #[expect(
             clippy::cast_possible_truncation,
@@ -103,7 +103,6 @@ impl<'a> AttenuationAnalysis<'a> {
     #[must_use]
     pub fn new(group: &'a AgentGroup, gains: &'a GainSet, index: usize) -> Self {
         let controller = &gains.controllers[index];
-        let of_groups = controller.groups.iter().zip(&group.synthesis.designs);
         let start = Start::of(group, controller).filter(|_| controller.is_certified());
         let simulator = start.map(|start| {
             let group = start.group(group);
@@ -113,9 +112,7 @@ impl<'a> AttenuationAnalysis<'a> {
             group,
             controller,
             index,
-            inequalities: of_groups
-                .map(|(own, design)| inequality(own, design))
-                .collect(),
+            inequalities: controller.groups.iter().map(inequality).collect(),
             start,
             simulator,
         }
@@ -202,15 +199,12 @@ impl<'a> AttenuationAnalysis<'a> {
     }
 }
 
-fn inequality(
-    own: &ChannelController,
-    design: &ChannelDesign,
-) -> Result<AttenuationInequality, NotApplicable> {
+fn inequality(own: &ChannelController) -> Result<AttenuationInequality, NotApplicable> {
     if own.gains.is_pid() {
         return Err(NotApplicable::NoEstimate);
     }
     let certificate = own.certificate().ok_or(NotApplicable::NoCertificate)?;
-    AttenuationInequality::new(design, &own.gains, certificate)
+    AttenuationInequality::new(&own.design, &own.gains, certificate)
 }
 
 fn sample(snapshot: &Snapshot, agent: usize, channel: usize) -> Sample {

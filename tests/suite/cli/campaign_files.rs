@@ -57,7 +57,7 @@ mass_scale = { uniform => mass_scale = { gaussian :: unknown key `gaussian` ~ `n
 kind = "uav"      => kind = "rocket"     :: unknown value `rocket` ~ expected `uav`
 preset = "uav-paper" => preset = "uav_paper" :: synthesis.preset (line 35) = "uav_paper" ~ "uav-physical" ~ did you mean "uav-paper"?
 "pid-tuned"]      => "pid_tuned"]        :: controllers[2] (line 5) = "pid_tuned" ~ did you mean "pid-tuned"?
-"pid-tuned"]      => "lqr"]              :: controllers[2] (line 5) = "lqr" ~ ftc, pid, pid-tuned ~ take one of them
+"pid-tuned"]      => "lqr"]              :: controllers[2] (line 5) = "lqr" ~ ftc, ftc-tuned, pid, pid-placed, pid-tuned, pid-robust-observer ~ take one of them
 "#,
     );
 }
@@ -440,7 +440,7 @@ fn the_step_that_an_error_advises_is_accepted() {
     let words = [
         "error: c.toml: time.step_s (line 9) = 0.03: ",
         "is unstable at the pole",
-        "of \"pid\"",
+        "of \"pid-tuned\"",
     ];
     let said = place.refuses(&run, 2, &words);
     // A step need not be the longest stable one to be good, but has to divide the duration.

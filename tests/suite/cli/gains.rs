@@ -193,7 +193,10 @@ fn a_placed_pid_is_compared_where_it_is_named_with_the_margin_or_the_poles_that_
         (placed / ftc - 1.0).abs() < 1e-6 && ftc > 5.0,
         "{ftc}, {placed}"
     );
-    let found = synthesized(&["--set", "synthesis.pid-placed.delay_margin_of=pid-tuned"]);
+    let found = synthesized(&[
+        "--set",
+        "synthesis.pid-placed.delay_margin_of=pid-robust-observer",
+    ]);
     assert!(margin_ms(&found, "pid-placed") > 2.0 * ftc);
     let found = synthesized(&["--set", "synthesis.pid-placed={ poles_rad_s = 20 }"]);
     let k = &found["pid-placed"]["attitude"]["k"];
@@ -231,7 +234,7 @@ fn a_placed_pid_is_compared_where_it_is_named_with_the_margin_or_the_poles_that_
         ),
         (
             "synthesis.pid-placed.delay_margin_of=ftd",
-            "the controllers that have one are ftc, pid, pid-tuned; did you mean \"ftc\"?",
+            "the controllers that have one are ftc, pid, pid-robust-observer; did you mean \"ftc\"?",
         ),
         ("synthesis.pid-placed.pole=3", "unknown key `pole`"),
     ] {

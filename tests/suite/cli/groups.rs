@@ -235,7 +235,7 @@ fn a_wrong_group_is_refused_by_its_key() {
         ("group=", "missing key or table `agent`; add it"),
         (
             "controllers=[\"ftc\", \"mine\"]",
-            "controllers[1] (--set controllers=[\"ftc\", \"mine\"]) = \"mine\": the controllers are ftc, pid, pid-tuned",
+            "controllers[1] (--set controllers=[\"ftc\", \"mine\"]) = \"mine\": the controllers are ftc, ftc-tuned, pid, pid-placed, pid-tuned, pid-robust-observer",
         ),
         (
             "group.0.agnet.kind=uav",

@@ -223,6 +223,8 @@ fn the_time_that_check_tells_is_right_within_a_factor_of_two() {
             "c.toml",
             "--episodes",
             &episodes.to_string(),
+            "--set",
+            "controllers=[\"ftc\", \"pid\", \"pid-robust-observer\", \"pid-placed\"]",
             "--json",
         ];
         let said = place.json(&arguments)["roughly_s"].as_f64().unwrap();

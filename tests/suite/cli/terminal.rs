@@ -95,7 +95,11 @@ fn a_quiet_command_prints_nothing_but_errors_and_what_json_asks_for() {
 
 #[test]
 fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
-    let place = Place::smoke(&[("[verdict]", REQUIRE), ("episodes = 3", "episodes = 16")]);
+    let place = Place::smoke(&[
+        ("[verdict]", REQUIRE),
+        ("episodes = 3", "episodes = 16"),
+        ("\"pid-tuned\"]", "\"pid-robust-observer\"]"),
+    ]);
     let said = place.program(&["run", "c.toml", "--out", "out"]).stdout;
     let sure = how_sure(&Campaign::load(&place.path("c.toml")).unwrap());
     assert!(sure.contains("exact tests agree"));
@@ -104,7 +108,7 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
     assert!(lines[0].starts_with(
         "  ftc does better than pid: it fails in 0.0 % of the episodes, the other in "
     ));
-    assert!(lines[1].starts_with("  ftc does better than pid-tuned: neither fails; "));
+    assert!(lines[1].starts_with("  ftc does better than pid-robust-observer: neither fails; "));
     assert!(lines[3].starts_with("on what terms: "), "{}", lines[3]);
     let head = "requirements: the failure rate with 95 % confidence";
     let at = lines.iter().position(|line| *line == head);

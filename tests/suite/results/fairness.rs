@@ -39,7 +39,8 @@ fn of_channels(
 
 #[test]
 fn val_the_terms_are_those_of_the_gains_and_of_the_table_of_channels() {
-    let campaign = altered("smoke", &["episodes=40"]);
+    let controllers = "controllers=[\"ftc\", \"pid\", \"pid-robust-observer\"]";
+    let campaign = altered("smoke", &["episodes=40", controllers]);
     let (terms, tables) = found(&campaign);
     let names: Vec<(&str, &str)> = terms
         .iter()
@@ -84,15 +85,15 @@ fn what_is_unlike_is_said_and_what_is_alike_is_not() {
         "smoke",
         &[
             "episodes=8",
-            "controllers=[\"ftc\", \"pid-tuned\", \"pid-placed\"]",
+            "controllers=[\"ftc\", \"pid-robust-observer\", \"pid-placed\"]",
         ],
     );
     let (terms, _) = found(&campaign);
     let sentences = unlike(&terms);
     assert_eq!(sentences.len(), 2, "{sentences:?}");
     for said in [
-        "ftc and pid-tuned are compared on unlike terms: crossover 101 against ",
-        "delay margin 7.59 against 27.3 ms in position and attitude",
+        "ftc and pid-robust-observer are compared on unlike terms: crossover 101 against ",
+        "delay margin 7.59 against 27.3 ms, peak gain from noise 346 against 1898 in position and attitude",
     ] {
         assert!(sentences[0].contains(said), "{sentences:?}");
     }

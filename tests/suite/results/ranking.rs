@@ -13,7 +13,9 @@ use urts_mc::results::tables::Tables;
 
 /// A campaign whose controllers have reasons to fail, and its scores.
 fn simulated(name: &str, episodes: u32) -> (Campaign, Scores) {
-    let campaign = campaign(name).with_episodes(episodes).unwrap();
+    // The controllers of which is known what drives them.
+    let controllers = "controllers=[\"ftc\", \"pid\", \"pid-robust-observer\"]";
+    let campaign = altered(name, &[&format!("episodes={episodes}"), controllers]);
     let scores = tables(&campaign, Precision::F32).scores;
     (campaign, scores)
 }
@@ -38,7 +40,7 @@ fn what_drives_the_error_is_found_and_what_does_not_is_not() {
     for (controller, condition) in [
         ("ftc", "fault1_amplitude"),
         ("pid", "fault1_amplitude"),
-        ("pid-tuned", "disturbance0_amplitude"),
+        ("pid-robust-observer", "disturbance0_amplitude"),
     ] {
         let mut found = sure(&ranking, "rmse", controller);
         let found = found.find(|ranked| ranked.condition == condition).unwrap();

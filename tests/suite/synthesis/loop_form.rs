@@ -71,7 +71,10 @@ fn poles_of_the_integrated_loop_are_those_of_the_analysis() {
         for (gains, analysis) in [
             (&case.synthesis.ftc, &analysis.ftc),
             (&case.synthesis.pid, &analysis.pid),
-            (&case.synthesis.pid_tuned, &analysis.pid_tuned),
+            (
+                &case.synthesis.pid_robust_observer,
+                &analysis.pid_robust_observer,
+            ),
         ] {
             let found = poles(&loop_gains(&case.design, gains).unwrap());
             assert_eq!(found.len(), 3 + gains.k.len().min(LOOP_STATES));

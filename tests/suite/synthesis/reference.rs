@@ -47,7 +47,7 @@ fn val_riccati_solutions_and_gains_match_the_reference() {
         let feedback = feedback_riccati(design).unwrap();
         let observer = observer_riccati(design, &feedback.gain).unwrap();
         let pid = pid_gains(design).unwrap();
-        let tuned = pid_tuned_gains(design).unwrap();
+        let tuned = pid_robust_observer_gains(design).unwrap();
         for (what, found, expected) in [
             ("K", feedback.gain, case.matrix("K")),
             ("P1", feedback.solution, case.matrix("P1_are")),
@@ -55,9 +55,13 @@ fn val_riccati_solutions_and_gains_match_the_reference() {
             ("X", observer.solution, case.matrix("X_filter")),
             ("K of pid", row(&pid.k), case.matrix("K_pid")),
             ("L of pid", column_of_rows(&pid.l), case.matrix("L_pid")),
-            ("K of pid-tuned", row(&tuned.k), case.matrix("K_pid")),
             (
-                "L of pid-tuned",
+                "K of pid-robust-observer",
+                row(&tuned.k),
+                case.matrix("K_pid"),
+            ),
+            (
+                "L of pid-robust-observer",
                 column_of_rows(&tuned.l),
                 matrix(&GOLDEN["pid_tuned"]["L"]),
             ),

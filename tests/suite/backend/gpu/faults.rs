@@ -1,9 +1,10 @@
 //! Every kind of fault and disturbance at once, on the GPU as on the CPU.
 
 use super::agreement::{CONTRACT, Expected};
+use super::altered;
 use super::parity::agreement;
 use super::{LONGEST, gpu_campaign, jets, linked, simulate};
-use crate::common::{altered, gains, gpu_or_skip};
+use crate::common::{gains, gpu_or_skip};
 use urts_mc::campaign::{Campaign, DisturbanceKind, FaultKind, FaultTarget, Link};
 
 /// Whether a campaign has every kind on every target and link that it can strike, but for `missing`.

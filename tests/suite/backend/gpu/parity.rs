@@ -2,8 +2,9 @@
 //! the CPU, in double precision within the contract and in single precision within rounding.
 
 use super::agreement::{CONTRACT, Expected, Summary, TWIN, failed, figures, saturated};
+use super::altered;
 use super::{Gains, LONGEST, mixed, mixed_thrust, simulate, team_of};
-use crate::common::{altered, gains, gpu_or_skip};
+use crate::common::{gains, gpu_or_skip};
 use urts_mc::backend::cpu::{Cpu, Precision};
 use urts_mc::backend::gpu::{Gpu, GpuSimulator, Tuning};
 use urts_mc::campaign::Campaign;

@@ -1,0 +1,63 @@
+//! Where and how episodes are to be simulated.
+
+use super::arguments::{BackendChoice, EngineArguments, PrecisionChoice, SimdChoice};
+use super::exit::Failure;
+use urts_mc::backend::cpu::{Precision, Simd};
+use urts_mc::backend::gpu::Tuning;
+use urts_mc::simulation::{Backend, RunOptions};
+
+impl EngineArguments {
+    /// The options; options that contradict each other are refused.
+    pub(super) fn options(&self) -> Result<RunOptions, Failure> {
+        let precision = match self.precision {
+            PrecisionChoice::F32 => Precision::F32,
+            PrecisionChoice::F64 => Precision::F64,
+        };
+        let simd = match self.simd {
+            SimdChoice::Auto => None,
+            SimdChoice::Scalar => Some(Simd::Scalar),
+            SimdChoice::Avx2 => Some(Simd::Avx2),
+            SimdChoice::Avx512 => Some(Simd::Avx512),
+        };
+        if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
+            let name = format!("{simd:?}").to_lowercase();
+            return Err(Failure::usage(format!(
+                "--simd {name}: this processor lacks it; use auto"
+            )));
+        }
+        let backend = match (self.backend, &self.adapter) {
+            (BackendChoice::Gpu, adapter) => Backend::Gpu {
+                adapter: adapter.clone(),
+            },
+            (_, Some(name)) => {
+                return Err(Failure::usage(format!(
+                    "--adapter {name}: only a GPU has adapters; add --backend gpu"
+                )));
+            }
+            (BackendChoice::Auto, None) => Backend::Auto,
+            (BackendChoice::Cpu, None) => Backend::Cpu,
+        };
+        if self.backend == BackendChoice::Gpu && precision == Precision::F64 {
+            return Err(Failure::usage(
+                "--precision f64: the shaders are in single precision; use --backend cpu".into(),
+            ));
+        }
+        if self.backend == BackendChoice::Gpu && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
+            ));
+        }
+        if precision == Precision::F64 && simd.is_some() {
+            return Err(Failure::usage(
+                "--simd: lays out episodes in single precision; leave it out, or use --precision f32".into(),
+            ));
+        }
+        Ok(RunOptions {
+            backend,
+            precision,
+            simd,
+            threads: usize::from(self.threads),
+            tuning: Tuning::default(),
+        })
+    }
+}
