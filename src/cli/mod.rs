@@ -182,10 +182,7 @@ fn tune_command(arguments: &TuneArguments) -> Result<Code, Failure> {
     });
     drop(shown);
     let found = found?;
-    tune::write(&found, &dir)?;
-    for (name, page) in tune::PAGES.into_iter().zip(tuning(&found)) {
-        dir.write(name, page.as_bytes())?;
-    }
+    tune::write(&found, &tuning(&found), &dir)?;
     if arguments.json {
         print_json(&tune::json(&found)?)?;
     } else if !arguments.quiet {

@@ -72,7 +72,7 @@ pub(super) fn lead(tuning: &Tuning) -> Vec<String> {
     tuning.minimised.iter().map(of_measure).collect()
 }
 
-/// Which limits the result does not keep in fresh episodes.
+/// Which limits the result does not keep in fresh episodes, and what else there is to know.
 pub(super) fn warnings(tuning: &Tuning) -> Vec<String> {
     let judged = tuning
         .limits
@@ -92,7 +92,10 @@ pub(super) fn warnings(tuning: &Tuning) -> Vec<String> {
         .refused
         .iter()
         .map(|reason| format!("it cannot fly: {reason}"));
-    broken.chain(refused).collect()
+    broken
+        .chain(refused)
+        .chain(tuning.notes.iter().cloned())
+        .collect()
 }
 
 /// What is measured of the result, beside what it began with and what it had to keep.

@@ -292,6 +292,7 @@ fn checked(
     }
 }
 
+/// A value as the text of a JSON file.
 fn pretty(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');

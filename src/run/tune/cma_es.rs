@@ -82,12 +82,6 @@ impl CmaEs {
         self.mean.as_slice()
     }
 
-    /// Standard deviation of the next generation along its longest axis.
-    #[must_use]
-    pub fn width(&self) -> f64 {
-        self.sigma * self.lengths.max()
-    }
-
     /// The candidates of the next generation.
     #[must_use]
     pub fn candidates(&self) -> Vec<Vec<f64>> {

@@ -6,9 +6,10 @@ use crate::campaign::{Campaign, Measure};
 use crate::controllers::{GainSet, SimulatedController};
 use crate::results::Measured;
 use crate::results::table::Table;
-use crate::run::directory::OutputDir;
+use crate::run::directory::{OutputDir, OutputFile};
 use crate::run::error::OutputError;
 use crate::run::manifest::{GIT_REVISION, campaign_hash};
+use crate::run::pretty;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,7 +21,7 @@ const GAINS: &str = "gains.json";
 /// Every candidate.
 const TABLES: [&str; 2] = ["tune.parquet", "tune.csv"];
 /// The pages on it.
-pub const PAGES: [&str; 2] = ["tune.html", "tune.md"];
+const PAGES: [&str; 2] = ["tune.html", "tune.md"];
 
 /// Where gains come from that a search found: enough to find them again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,16 +91,21 @@ pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Output
     OutputDir::claim_for(path, overwrite, &is_own, what)
 }
 
-/// Writes all but the pages.
+/// Writes a search with its pages, HTML and Markdown: the findings are taken away first and written last, so that a
+/// directory that has them is whole.
 ///
 /// # Errors
 /// If a file cannot be encoded or written.
-pub fn write(tuning: &Tuning, out: &OutputDir) -> Result<(), TuneError> {
+pub fn write(tuning: &Tuning, pages: &[String; 2], out: &OutputDir) -> Result<(), TuneError> {
+    OutputFile::claim(&out.path().join(FINDINGS))?.remove()?;
     let [parquet, csv] = TABLES;
     let table = table(tuning);
     out.write_parquet(parquet, &table)?;
     out.write_csv(csv, &table)?;
     out.write(GAINS, &pretty(&gains(tuning)?)?)?;
+    for (name, page) in PAGES.into_iter().zip(pages) {
+        out.write(name, page.as_bytes())?;
+    }
     out.write(FINDINGS, &pretty(&findings(tuning))?)?;
     Ok(())
 }
@@ -162,9 +168,10 @@ fn provenance(tuning: &Tuning) -> Provenance {
     let judged = limits.iter().zip(&tuning.confirmed.holds);
     Provenance {
         command: format!(
-            "urts-mc tune {} --controller {}{}",
+            "urts-mc tune {} --controller {} --seed {}{}",
             campaign.path.display(),
             tuning.structure.name,
+            campaign.seed,
             settings.collect::<String>()
         ),
         version: env!("CARGO_PKG_VERSION").to_string(),
@@ -240,10 +247,4 @@ fn table(tuning: &Tuning) -> Table {
 /// A name as that of a column.
 fn column(name: &str) -> String {
     name.replace(' ', "_")
-}
-
-fn pretty(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
-    let mut bytes = serde_json::to_vec_pretty(value)?;
-    bytes.push(b'\n');
-    Ok(bytes)
 }

@@ -14,7 +14,7 @@ mod tuning;
 mod watched;
 
 pub use cma_es::{CmaEs, usual_population};
-pub use files::{PAGES, Provenance, claim, json, write};
+pub use files::{Provenance, claim, json, write};
 pub use structure::{FreeParameter, STRUCTURES, Structure};
 pub use trial::Evaluation;
 pub use tuning::{TuneError, Tuning};
@@ -70,7 +70,7 @@ pub fn tune(
     progress: Heard<'_>,
 ) -> Result<Tuning, TuneError> {
     let asked = asked(campaign)?;
-    let (gpu, _) = open(options)?;
+    let (gpu, notes) = open(options)?;
     let start = gains(campaign, vec![structure.starts_from.to_string()])?;
     let start = start.iter().flat_map(|set| &set.controllers[0].groups);
     let start: Vec<f64> = start.flat_map(structure.start).collect();
@@ -118,6 +118,7 @@ pub fn tune(
         start,
         confirmed,
         controllers,
+        notes,
     })
 }
 

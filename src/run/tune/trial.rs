@@ -238,6 +238,10 @@ impl Trial<'_> {
         let campaign = self.campaign.clone();
         let campaign = campaign.drawn_anew(episodes.seed, episodes.count, names);
         let simulation = simulate(&campaign, &gains, self.options, self.gpu, &|_| ())?;
+        // Candidates are not judged by fewer episodes than they were to have.
+        if let Some(error) = simulation.interrupted {
+            return Err(SimulationError::Gpu(error));
+        }
         Ok(Flown {
             campaign,
             gains,

@@ -62,6 +62,8 @@ pub struct Tuning {
     pub confirmed: Evaluation,
     /// Its controller, for each group of agents.
     pub controllers: Vec<SimulatedController>,
+    /// What there is to know of the choice of the backend.
+    pub notes: Vec<String>,
 }
 
 impl Tuning {

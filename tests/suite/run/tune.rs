@@ -40,7 +40,8 @@ fn measure(tuning: &Tuning, of: &Evaluation, name: &str) -> f64 {
 }
 
 fn written(tuning: &Tuning, place: &Path) -> Vec<(String, Vec<u8>)> {
-    write(tuning, &claim(place, &tuning.campaign, false).unwrap()).unwrap();
+    let dir = claim(place, &tuning.campaign, false).unwrap();
+    write(tuning, &urts_mc::report::tuning(tuning), &dir).unwrap();
     let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(place)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -146,7 +147,7 @@ fn a_search_is_the_same_for_any_number_of_threads_and_another_for_another_seed()
         )
     };
     let one = files("one", 2026, 1);
-    assert_eq!(one.len(), 4);
+    assert_eq!(one.len(), 6);
     assert!(one == files("two", 2026, 2));
     assert!(one != files("other", 2027, 2));
 }
