@@ -8,6 +8,7 @@ pub use actuation::ActuationKind;
 pub use role::ChannelRole;
 
 use robot::{JOINTS, Robot};
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -110,6 +111,26 @@ impl Agent {
         match self {
             Self::Uav(uav) => uav.actuation,
             Self::Biped(biped) => biped.actuation,
+        }
+    }
+
+    /// The largest force or torque that the actuators can set against a disturbance, by channel, N or N m; infinite
+    /// where nothing limits them. A UAV that tilts as far as it may pushes sideways with a part of its thrust, and
+    /// upwards with what its weight leaves.
+    #[must_use]
+    pub fn reserves(&self) -> Vec<f64> {
+        match self {
+            Self::Uav(uav) if uav.actuation == ActuationKind::Thrust => {
+                let sideways = uav.max_thrust_n * uav.max_tilt_rad.min(FRAC_PI_2).sin();
+                let upwards = uav.max_thrust_n - uav.mass_kg * uav.gravity_m_s2;
+                let position = [sideways, sideways, upwards];
+                [position, [uav.max_torque_n_m; 3]].concat()
+            }
+            Self::Biped(biped) if biped.actuation == ActuationKind::Limited => {
+                let joints = biped.robot.joints();
+                joints.map(|joint| joint.torque_max_n_m).collect()
+            }
+            _ => vec![f64::INFINITY; self.channels().len()],
         }
     }
 

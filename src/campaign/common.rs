@@ -2,9 +2,9 @@
 
 use super::overlay::Setting;
 use super::plan::{Sampling, Stop, Strata};
+use super::requirement::Requirement;
 use super::time::Time;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Name of the paper's fault-tolerant controller.
 pub const FTC: &str = "ftc";
@@ -44,6 +44,8 @@ pub struct Common {
     pub overlay: Vec<Setting>,
     /// Name.
     pub name: String,
+    /// What is tested and why, in one line; empty if the file does not say.
+    pub description: String,
     /// Seed of every random number.
     pub seed: u64,
     /// Number of episodes, at least 1.
@@ -60,16 +62,4 @@ pub struct Common {
     pub stop: Option<Stop>,
     /// Conditions on the result.
     pub requirements: Vec<Requirement>,
-}
-
-/// A condition on the result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Requirement {
-    /// The controller that has to meet it.
-    pub controller: String,
-    /// The stratum in which it has to, or [`ALL`](super::ALL) episodes.
-    pub stratum: Arc<str>,
-    /// Upper limit of the one-sided 95 % bound of the failure rate: Clopper-Pearson's, or that of the confidence
-    /// sequence where `[stop]` decides on the number of episodes.
-    pub failure_rate_upper_95: f64,
 }

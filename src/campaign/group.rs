@@ -107,6 +107,8 @@ pub struct ChannelsOfCampaign {
     pub role: ChannelRole,
     /// Which of an agent's channels.
     pub channels: Range<usize>,
+    /// Which of the group's channel groups.
+    pub place: usize,
 }
 
 impl GroupParts {

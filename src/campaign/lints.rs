@@ -1,21 +1,23 @@
 //! What a campaign may do, but its writer has probably not meant: said before the run, forbidden by nothing.
 
-use super::common::Requirement;
 use super::distribution::Distribution;
 use super::disturbances_and_faults::Fault;
 use super::group::AgentGroup;
+use super::measure::{Measure, Side};
 use super::plan::ALL;
 use super::quantity::RandomQuantity;
+use super::requirement::Requirement;
 use super::validated::Campaign;
 use crate::reference::{AgentWalk, Reference, WaypointPath};
-use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
+use crate::statistics::{LEVEL, alike_needed, runs_needed, sequential_runs_needed};
+use crate::util::format::digits;
 
 /// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached,
 /// faults that nobody has or that are gone before they have come.
 #[must_use]
 pub fn cautions(campaign: &Campaign) -> Vec<String> {
-    let requirements = campaign.requirements.iter().enumerate();
-    let unprovable = requirements.filter_map(|(index, own)| unprovable(campaign, index, own));
+    let requirements = campaign.requirements.iter();
+    let unprovable = requirements.filter_map(|own| unprovable(campaign, own));
     let groups = campaign.groups().iter().enumerate();
     let of_groups = groups.flat_map(|(index, group)| {
         let prefix = match campaign.has_named_groups() {
@@ -36,7 +38,58 @@ fn of_group(group: &AgentGroup) -> impl Iterator<Item = String> {
     let faults = group.faults.iter().enumerate();
     let unfinished =
         faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
-    unreached(group).into_iter().chain(unfinished)
+    unreached(group)
+        .into_iter()
+        .chain(overwhelming(group))
+        .chain(unfinished)
+}
+
+/// Disturbances that together may be more than the actuators can give: what is flown then is the limits, not the
+/// controllers.
+fn overwhelming(group: &AgentGroup) -> Option<String> {
+    let largest_of = |drawn: &Distribution| match *drawn {
+        // Hardly anything lies farther out.
+        Distribution::Normal { mean, std } => mean.abs() + 2.0 * std,
+        _ => {
+            let (low, high) = drawn.support();
+            low.abs().max(high.abs())
+        }
+    };
+    let on_channel = |agent: usize, channel: usize| -> f64 {
+        let all = group.disturbances.iter().flat_map(|disturbance| {
+            let named = disturbance.kind.parameters().iter();
+            named.zip(&disturbance.parameters)
+        });
+        let amplitudes = all.filter(|(parameter, _)| parameter.name == "amplitude");
+        let sizes = amplitudes.map(|(_, drawn)| {
+            let channel = channel.min(drawn.channels - 1);
+            largest_of(drawn.of(agent, channel))
+        });
+        sizes.sum()
+    };
+    let of_channel = |(channel, reserve): (usize, f64)| {
+        let agents = (0..group.team).map(|agent| on_channel(agent, channel));
+        let largest = agents.fold(0.0, f64::max);
+        (largest > reserve).then(|| {
+            let name = &group.channels()[channel];
+            let unit = if group.unit(channel) == "m" {
+                "N"
+            } else {
+                "N m"
+            };
+            format!(
+                "disturbance: up to {} {unit} act on {name}, the actuators can set {} {unit} against them",
+                digits(largest, 4),
+                digits(reserve.max(0.0), 4)
+            )
+        })
+    };
+    group
+        .agent
+        .reserves()
+        .into_iter()
+        .enumerate()
+        .find_map(of_channel)
 }
 
 /// Episodes that are all the same.
@@ -52,47 +105,69 @@ fn repeated(campaign: &Campaign) -> Option<String> {
     })
 }
 
-/// A requirement that does not hold even if nothing fails.
-fn unprovable(campaign: &Campaign, index: usize, requirement: &Requirement) -> Option<String> {
+/// A requirement that does not hold even if everything goes as it should.
+fn unprovable(campaign: &Campaign, requirement: &Requirement) -> Option<String> {
     let Requirement {
+        place,
         controller,
         stratum,
-        failure_rate_upper_95: limit,
+        measure,
+        side,
+        limit,
+        compared,
     } = requirement;
-    // That a rate is at most 1 needs no proof.
-    if *limit >= 1.0 {
-        return None;
-    }
-    let strata = &campaign.strata;
-    let place = strata.all().iter().position(|own| own.name == *stratum);
-    let (n, of_stratum) = match place {
-        Some(place) if &**stratum != ALL => (
-            strata.count(place, campaign.episodes),
-            format!(" of the stratum {stratum:?}"),
-        ),
-        _ => (u64::from(campaign.episodes), String::new()),
-    };
     let needed = match campaign.stop {
         Some(_) => sequential_runs_needed,
         None => runs_needed,
     };
-    let enough = needed(*limit, LEVEL, 0);
+    let of_rate = |rate: f64| (rate < 1.0).then(|| needed(rate, LEVEL, 0));
+    // Of a share that all episodes have, or none; of a quantile that the largest or smallest of them bounds.
+    let enough = match (measure, compared, side) {
+        (Measure::Loop { .. }, ..) => None,
+        (Measure::Episodes { share, .. }, _, Side::AtMost) => of_rate(1.0 - share),
+        (Measure::Episodes { share, .. }, _, Side::AtLeast) => of_rate(*share),
+        (_, Some(_), Side::AtMost) if 0.0 < *limit && *limit < 1.0 => {
+            Some(alike_needed(*limit, LEVEL))
+        }
+        (_, Some(_), Side::AtLeast) if -1.0 < *limit && *limit < 0.0 => {
+            Some(alike_needed(-limit, LEVEL))
+        }
+        (_, Some(_), _) => None,
+        (_, None, Side::AtMost) => of_rate(*limit),
+        (_, None, Side::AtLeast) => of_rate(1.0 - limit),
+    }?;
+    let strata = &campaign.strata;
+    let index = strata.all().iter().position(|own| own.name == *stratum);
+    let (n, of_stratum) = match index {
+        Some(index) if &**stratum != ALL => (
+            strata.count(index, campaign.episodes),
+            format!(" of the stratum {stratum:?}"),
+        ),
+        _ => (u64::from(campaign.episodes), String::new()),
+    };
     if enough.is_some_and(|enough| n >= enough) {
         return None;
     }
     let episodes = if n == 1 { "episode" } else { "episodes" };
-    let remedy = match (enough, place) {
-        (Some(enough), Some(place)) if !of_stratum.is_empty() => format!(
+    let remedy = match (enough, index) {
+        (Some(enough), Some(index)) if !of_stratum.is_empty() => format!(
             "simulate at least {} episodes, {enough} of them there",
-            strata.episodes_for(place, enough)
+            strata.episodes_for(index, enough)
         ),
         (Some(enough), _) => format!("simulate at least {enough}"),
         (None, _) => "no number of episodes does".to_string(),
     };
-    Some(format!(
-        "require[{index}].failure_rate_upper_95 = {limit}: {n} {episodes}{of_stratum} cannot prove it, even if {controller:?} fails \
-         in none; {remedy}"
-    ))
+    Some(match (measure, compared) {
+        (Measure::FailureRate, None) if *side == Side::AtMost => format!(
+            "require[{place}].failure_rate_upper_95 = {limit}: {n} {episodes}{of_stratum} cannot prove it, even if \
+             {controller:?} fails in none; {remedy}"
+        ),
+        _ => format!(
+            "require[{place}]: {n} {episodes}{of_stratum} cannot prove {} {} {limit}, whatever they show; {remedy}",
+            requirement.quantity(),
+            side.words()
+        ),
+    })
 }
 
 /// When somebody sets out, how long it moves, and how long all takes that is planned, s.

@@ -6,6 +6,7 @@ use super::error::CampaignError;
 use super::file::CampaignFile;
 use super::group::GroupParts;
 use super::overlay::Setting;
+use super::requirement::{Compared, Requirement};
 use super::source::Source;
 use super::validate::validate;
 use super::validated::Campaign;
@@ -103,6 +104,20 @@ impl Campaign {
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         self.with(|campaign| campaign.seed = seed)
+    }
+
+    /// The limits that a text such as "rmse position p50 <= 1.05" sets on how a controller compares with another one.
+    ///
+    /// # Errors
+    /// If there is no such measure, or no number of the campaign's episodes proves it.
+    pub(crate) fn demanded(
+        &self,
+        controller: &str,
+        compared: &Compared,
+        text: &str,
+    ) -> Result<Vec<Requirement>, CampaignError> {
+        let check = self.check(String::new());
+        check.demanded(text, controller, compared, self)
     }
 
     /// The JSON Schema of the campaign file.

@@ -2,6 +2,7 @@
 //! `delay_margin_ms attitude`.
 
 use crate::util::suggest::did_you_mean;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 
@@ -10,6 +11,11 @@ use std::sync::Arc;
 pub enum Measure {
     /// Share of the episodes that fail.
     FailureRate,
+    /// Share of the episodes that have not failed at this time.
+    Survival {
+        /// When, s.
+        at_s: f64,
+    },
     /// A quantile over the episodes.
     Episodes {
         /// Of which number of an episode.
@@ -26,6 +32,37 @@ pub enum Measure {
         /// On which channels.
         channels: MeasuredChannels,
     },
+}
+
+/// On which side of a limit something has to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// At or below it.
+    #[default]
+    AtMost,
+    /// At or above it.
+    AtLeast,
+}
+
+impl Side {
+    /// In two words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+        }
+    }
+
+    /// Whether a value is there.
+    #[must_use]
+    pub fn holds(self, value: f64, limit: f64) -> bool {
+        match self {
+            Self::AtMost => value <= limit,
+            Self::AtLeast => value >= limit,
+        }
+    }
 }
 
 /// One of [`Campaign::channel_groups`](super::Campaign::channel_groups).
@@ -70,6 +107,12 @@ named_numbers! {
         Effort: "effort",
         /// Largest share of the steps at a limit of any agent and channel.
         SaturatedShare: "saturated_share",
+        /// When the last agent and channel is settled, s; infinite where one does not settle.
+        Settling: "settling_s",
+        /// How long after the first fault of an agent the last of its channels is settled again, s, of the agent for
+        /// which it takes longest; infinite where one does not settle. Episodes without a fault that begins later
+        /// than the episode have none.
+        Recovery: "recovery_s",
     }
 }
 
@@ -86,11 +129,15 @@ named_numbers! {
         NoisePeak: "noise_peak",
         /// Feedback acceleration from white noise, in the root mean square.
         NoiseH2: "noise_h2",
+        /// Certified attenuation level of a controller that estimates the faults.
+        CertifiedRho: "certified_rho",
     }
 }
 
-/// Name of the one number that is of no channels.
-const FAILURE_RATE: &str = "failure_rate";
+/// Name of the share of episodes that fail.
+pub(super) const FAILURE_RATE: &str = "failure_rate";
+/// Name of the share of episodes that have not failed at a time, which follows.
+const SURVIVAL: &str = "survival_at_s";
 
 /// What is wrong with the words of a measure.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -112,6 +159,9 @@ impl Measure {
         } else {
             words.remove(0)
         };
+        if first == SURVIVAL {
+            return survival(&words).map(|own| vec![own]);
+        }
         let share = words.last().and_then(|last| quantile(last));
         if share.is_some() {
             words.pop();
@@ -146,7 +196,10 @@ impl Measure {
             (None, None, _) if first != FAILURE_RATE => {
                 let of_episodes = EpisodeNumber::ALL.iter().map(|own| own.name());
                 let of_loops = LoopNumber::ALL.iter().map(|own| own.name());
-                let known: Vec<&str> = of_episodes.chain(of_loops).chain([FAILURE_RATE]).collect();
+                let known: Vec<&str> = of_episodes
+                    .chain(of_loops)
+                    .chain([FAILURE_RATE, SURVIVAL])
+                    .collect();
                 Err(Misnamed {
                     limit: format!("a measure begins with one of {}", known.join(", ")),
                     remedy: did_you_mean(first, known, "take one of them"),
@@ -163,7 +216,7 @@ impl Measure {
     #[must_use]
     pub fn channels(&self) -> Option<&MeasuredChannels> {
         match self {
-            Self::FailureRate => None,
+            Self::FailureRate | Self::Survival { .. } => None,
             Self::Episodes { channels, .. } | Self::Loop { channels, .. } => Some(channels),
         }
     }
@@ -174,7 +227,23 @@ impl Measure {
         let of_loop = |number: &LoopNumber| {
             matches!(number, LoopNumber::DelayMargin | LoopNumber::PhaseMargin)
         };
-        matches!(self, Self::Loop { number, .. } if of_loop(number))
+        match self {
+            Self::Survival { .. } => true,
+            Self::Loop { number, .. } => of_loop(number),
+            Self::FailureRate | Self::Episodes { .. } => false,
+        }
+    }
+
+    /// Whether chance is in it.
+    #[must_use]
+    pub fn is_of_episodes(&self) -> bool {
+        !matches!(self, Self::Loop { .. })
+    }
+
+    /// Whether it is a share of the episodes.
+    #[must_use]
+    pub fn is_rate(&self) -> bool {
+        matches!(self, Self::FailureRate | Self::Survival { .. })
     }
 }
 
@@ -182,6 +251,7 @@ impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FailureRate => f.write_str(FAILURE_RATE),
+            Self::Survival { at_s } => write!(f, "{SURVIVAL} {at_s}"),
             Self::Episodes {
                 number,
                 channels,
@@ -192,6 +262,22 @@ impl fmt::Display for Measure {
             Self::Loop { number, channels } => write!(f, "{} {}", number.name(), channels.name),
         }
     }
+}
+
+/// The share of the episodes that have not failed at the time that some words name.
+fn survival(words: &[&str]) -> Result<Measure, Misnamed> {
+    let at_s = match words {
+        [word] => word
+            .parse()
+            .ok()
+            .filter(|at_s: &f64| at_s.is_finite() && *at_s > 0.0),
+        _ => None,
+    };
+    at_s.map(|at_s| Measure::Survival { at_s })
+        .ok_or_else(|| Misnamed {
+            limit: format!("{SURVIVAL} is followed by a time, s"),
+            remedy: format!("write it as \"{SURVIVAL} 10\""),
+        })
 }
 
 /// The share of a word such as "p95".

@@ -16,6 +16,7 @@ mod overlay;
 mod parameter;
 mod plan;
 mod quantity;
+mod requirement;
 mod source;
 mod time;
 mod tune;
@@ -24,7 +25,7 @@ mod validated;
 
 pub use common::{
     BUILT_IN, COMPARED, Common, FTC, FTC_TUNED, PID, PID_PLACED, PID_ROBUST_OBSERVER, PID_TUNED,
-    Requirement, SYNTHESIZED,
+    SYNTHESIZED,
 };
 pub use distribution::Distribution;
 pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
@@ -35,11 +36,12 @@ pub use group::{
     PidPlaced, PlacedPoles, Verdict,
 };
 pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
-pub use measure::{EpisodeNumber, LoopNumber, Measure, MeasuredChannels};
+pub use measure::{EpisodeNumber, LoopNumber, Measure, MeasuredChannels, Side};
 pub use overlay::{Setting, SettingError};
 pub use parameter::{Parameter, SamplingScope};
 pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
+pub use requirement::{Compared, Requirement};
 pub use time::{Time, Timing};
-pub use tune::{Bound, Limit, Side, Term, Tune};
+pub use tune::{Bound, Limit, Term, Tune};
 pub use validated::Campaign;

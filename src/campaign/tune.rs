@@ -1,6 +1,6 @@
 //! How the free parameters of a controller are searched: what is to be small, within which limits, at which expense.
 
-use super::measure::Measure;
+use super::measure::{Measure, Side};
 use std::fmt;
 
 /// `[tune]`
@@ -36,15 +36,6 @@ pub struct Limit {
     pub side: Side,
     /// The bound.
     pub bound: Bound,
-}
-
-/// On which side of a bound something has to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// At or below it.
-    AtMost,
-    /// At or above it.
-    AtLeast,
 }
 
 /// A bound.

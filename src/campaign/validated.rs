@@ -114,8 +114,9 @@ impl Campaign {
     pub fn channel_groups(&self) -> Vec<ChannelsOfCampaign> {
         let groups = self.groups.iter().enumerate();
         let of_group = |(index, group): (usize, &AgentGroup)| {
-            let channels = group.channel_groups().into_iter();
-            let of_campaign = channels.map(|own| ChannelsOfCampaign {
+            let channels = group.channel_groups().into_iter().enumerate();
+            let of_campaign = channels.map(|(place, own)| ChannelsOfCampaign {
+                place,
                 group: index,
                 name: group.titled(own.role.name()).into(),
                 role: own.role,

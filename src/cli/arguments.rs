@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad usage or campaign file; 3 synthesis failed;\n\
-4 a [[require]] of the campaign does not hold; 1 anything else.";
+4 a [[require]] does not hold, or compare finds a regression; 1 anything else.";
 
 /// The examples of a command's help, one a line; a test runs them all.
 fn examples(lines: &[&str]) -> String {
@@ -72,13 +72,24 @@ pub(crate) enum Command {
         "urts-mc replay reports/smoke --episode 3 --interval 0.05 --out episode-3.parquet",
     ]))]
     Replay(ReplayArguments),
+    /// Compare two runs of the same draws, episode by episode
+    #[command(after_help = examples(&[
+        "urts-mc compare reports/smoke reports/smoke",
+        "urts-mc compare reports/smoke reports/smoke --pair ftc=pid --ratio 'rmse p50 <= 0.9'",
+    ]))]
+    Compare(CompareArguments),
     /// Write the report of a run again, from its tables alone
     #[command(after_help = examples(&[
         "urts-mc report reports/smoke",
+        "urts-mc report reports/smoke --full",
     ]))]
     Report {
         /// Output directory of the run
         run: PathBuf,
+        /// Say everything in report.md, however long; without it it fits into
+        /// a comment on a pull request
+        #[arg(long, verbatim_doc_comment)]
+        full: bool,
     },
     /// Draw the paper's figures again and compare its claims with measurements
     #[command(after_help = examples(&[
@@ -168,6 +179,10 @@ pub(crate) struct RunArguments {
     /// the cross-check and the simulation
     #[arg(long, value_name = "FILE", verbatim_doc_comment)]
     pub(crate) junit: Option<PathBuf>,
+    /// Print more than fits a screen: pairs, strata, what matters, worst
+    /// episodes, times
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) verbose: bool,
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -229,6 +244,48 @@ pub(crate) struct TuneArguments {
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArguments {
+    /// Output directory of the run to compare with, "A"
+    pub(crate) a: PathBuf,
+    /// Output directory of the run that may have become worse, "B"
+    pub(crate) b: PathBuf,
+    /// Compare a controller of B with another one of A, such as ftc-tuned=ftc;
+    /// without it those that are in both. Repeatable
+    #[arg(long, value_name = "B=A", verbatim_doc_comment, value_parser = pair)]
+    pub(crate) pair: Vec<[String; 2]>,
+    /// What has to be proved of the ratio of B's numbers to A's, such as
+    /// "rmse position p50 <= 1.05". Repeatable
+    #[arg(long, value_name = "LIMIT", verbatim_doc_comment)]
+    pub(crate) ratio: Vec<String>,
+    /// The same of their difference, such as "failure_rate <= 0.01". Repeatable
+    #[arg(long, value_name = "LIMIT")]
+    pub(crate) difference: Vec<String>,
+    /// Output directory [default: reports/<name of B>-against-<name of A>]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write a JUnit XML file for CI: pairs and limits as test cases
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
+    /// Write even where the output directory holds something else
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors and what --json asks for
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Two controllers.
+fn pair(text: &str) -> Result<[String; 2], String> {
+    match text.split_once('=') {
+        Some((b, a)) if !b.is_empty() && !a.is_empty() => Ok([b.to_string(), a.to_string()]),
+        _ => Err("name a controller of B and one of A, such as ftc-tuned=ftc".to_string()),
+    }
 }
 
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ use urts_mc::controllers::GainsError;
 use urts_mc::report::ReportError;
 use urts_mc::report::paper::PaperError;
 use urts_mc::run::RunError;
+use urts_mc::run::compare::CompareError;
 use urts_mc::run::error::OutputError;
 use urts_mc::run::replay::ReplayError;
 use urts_mc::run::tune::TuneError;
@@ -94,6 +95,7 @@ impl Ends for RunError {
     fn code(&self) -> Code {
         match self {
             Self::Gains(error) => error.code(),
+            Self::Campaign(error) => error.code(),
             Self::Output(error) => error.code(),
             Self::Simulation(error) => error.code(),
             Self::Interrupted { .. } | Self::Manifest(_) => Code::Other,
@@ -123,6 +125,25 @@ impl Ends for TuneError {
     fn output(&self) -> Option<&OutputError> {
         match self {
             Self::Output(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl Ends for CompareError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Run(error) => error.code(),
+            Self::Campaign(error) => error.code(),
+            Self::Gains(error) => error.code(),
+            Self::Differ { .. } | Self::Usage { .. } => Code::Usage,
+            Self::Json(error) => error.code(),
+        }
+    }
+
+    fn output(&self) -> Option<&OutputError> {
+        match self {
+            Self::Run(error) => Some(error),
             _ => None,
         }
     }

@@ -12,8 +12,8 @@ pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
 
 use arguments::{
-    CheckArguments, Command, DevicesArguments, Overrides, PlanArguments, ReplayArguments,
-    RunArguments, SynthesizeArguments, TuneArguments,
+    CheckArguments, Command, CompareArguments, DevicesArguments, Overrides, PlanArguments,
+    ReplayArguments, RunArguments, SynthesizeArguments, TuneArguments,
 };
 use completions::completions;
 use console::{print, print_json, print_note};
@@ -27,9 +27,14 @@ use urts_mc::backend::gpu::adapters;
 use urts_mc::campaign::Campaign;
 use urts_mc::campaign::lints::cautions;
 use urts_mc::controllers::GainSet;
+use urts_mc::report::junit::junit_of_comparison;
 use urts_mc::report::paper::{claim_dir, paper};
-use urts_mc::report::problems::{shortcoming, unmet};
-use urts_mc::report::{report, terminal, trace, tuning};
+use urts_mc::report::problems::shortcoming;
+use urts_mc::report::requirements::unmet;
+use urts_mc::report::terminal::Detail;
+use urts_mc::report::{Length, comparison, regressions, report, terminal, trace, tuning};
+use urts_mc::results::can_be_judged;
+use urts_mc::run::compare::{self, Asked, compare_runs};
 use urts_mc::run::directory::{OutputDir, OutputFile};
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
@@ -62,10 +67,12 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
         Command::Run(arguments) => run_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Tune(arguments) => tune_command(&arguments),
+        Command::Compare(arguments) => compare_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
-        Command::Report { run } => {
-            report(&run)?;
+        Command::Report { run, full } => {
+            let length = if full { Length::Full } else { Length::Brief };
+            report(&run, length)?;
             print(&terminal::report(&run))?;
             Ok(Code::Done)
         }
@@ -118,7 +125,11 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     if arguments.json {
         print_json(&findings)?;
     } else if !arguments.quiet {
-        print(&terminal::findings(&campaign, &findings, &out))?;
+        let detail = match arguments.verbose {
+            true => Detail::Everything,
+            false => Detail::Screen,
+        };
+        print(&terminal::findings(&campaign, &findings, &out, detail))?;
     }
     written?;
     if let Some(error) = shortcoming(&findings.manifest, &out) {
@@ -159,7 +170,7 @@ impl RunArguments {
         let findings = run(campaign, &options, &out, extras, &|at| {
             shown.tell(at);
         })?;
-        report(out.path())?;
+        report(out.path(), Length::Brief)?;
         Ok(findings)
     }
 }
@@ -189,6 +200,36 @@ fn tune_command(arguments: &TuneArguments) -> Result<Code, Failure> {
         print(&terminal::tuning(&found, &out))?;
     }
     Ok(Code::Done)
+}
+
+fn compare_command(arguments: &CompareArguments) -> Result<Code, Failure> {
+    let CompareArguments { a, b, .. } = arguments;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let name = |run: &Path| run.file_name().unwrap_or_default().display().to_string();
+        Path::new("reports").join(format!("{}-against-{}", name(b), name(a)))
+    });
+    let dir = compare::claim(&out, arguments.overwrite)?;
+    let junit = arguments.junit.as_deref().map(OutputFile::claim);
+    let junit = junit.transpose()?;
+    let asked = Asked {
+        pairs: arguments.pair.clone(),
+        ratios: arguments.ratio.clone(),
+        differences: arguments.difference.clone(),
+    };
+    let found = compare_runs(a, b, &asked)?;
+    compare::write(&found, &comparison(&found), &dir)?;
+    if let Some(file) = junit {
+        file.write(junit_of_comparison(&found)?.as_bytes())?;
+    }
+    if arguments.json {
+        print_json(&found)?;
+    } else if !arguments.quiet {
+        print(&terminal::comparison(&found, &out))?;
+    }
+    match regressions(&found) {
+        None => Ok(Code::Done),
+        Some(worse) => Err(Failure::new(Code::Unmet, worse)),
+    }
 }
 
 fn plan_command(arguments: &PlanArguments) -> Result<Code, Failure> {
@@ -222,6 +263,7 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     let gains = GainSet::of_groups(&campaign);
     drop(shown);
     let gains = gains?;
+    can_be_judged(&campaign, &gains)?;
     if arguments.json {
         print_json(&terminal::plan_json(&campaign, &gains))?;
     } else if !arguments.quiet {

@@ -5,13 +5,28 @@ use super::file;
 use super::gain_set::{ChannelController, Findings, SimulatedController};
 use crate::agent::ChannelGroup;
 use crate::campaign::{
-    AgentGroup, FTC, PID, PID_PLACED, PID_ROBUST_OBSERVER, PidPlaced, PlacedPoles,
+    AgentGroup, FTC, FTC_TUNED, PID, PID_PLACED, PID_ROBUST_OBSERVER, PID_TUNED, PidPlaced,
+    PlacedPoles,
 };
 use crate::synthesis::{
     ChannelDesign, ChannelSynthesis, ControllerGains, LoopAnalysis, PLACED_RAD_S, SynthesisError,
     placed_gains, poles_for_delay_margin,
 };
 use std::path::Path;
+
+/// What a built-in controller is, in a few words; none of one that comes from a file.
+#[must_use]
+pub fn spelled_out(name: &str) -> Option<&'static str> {
+    Some(match name {
+        FTC => "the paper's fault-tolerant controller",
+        FTC_TUNED => "the same structure, tuned with the budget and limits of pid-tuned",
+        PID => "the paper's PID read plainly: hardly any integral action",
+        PID_PLACED => "PID whose error has a triple pole",
+        PID_TUNED => "PID tuned within ftc's margins, noise gains and commands",
+        PID_ROBUST_OBSERVER => "pid with an observer that distrusts the velocity sensor",
+        _ => return None,
+    })
+}
 
 /// A row of [`TUNED`].
 macro_rules! tuned {

@@ -4,6 +4,7 @@
 use super::gain_set::GainSet;
 use crate::campaign::kinds::DELAY;
 use crate::campaign::{AgentGroup, Campaign, Distribution, Fault, FaultKind, RandomQuantity};
+use crate::util::format::digits;
 
 /// A sentence for each of them: delays beyond the margin of a controller, and attenuation levels that are not reached.
 #[must_use]
@@ -80,7 +81,7 @@ fn unreached(group: &AgentGroup, gains: &GainSet) -> Vec<String> {
                     "{} on {}: the weights ask for an attenuation of rho = {}, the gains certify {:.3} only",
                     controller.name,
                     group.titled(channels.role.name()),
-                    own.design.rho,
+                    digits(own.design.rho, 4),
                     certificate.rho
                 )
             })

@@ -9,7 +9,7 @@ mod gain_set;
 mod load;
 mod step;
 
-pub use built_in::{fault_tolerant, synthesized};
+pub use built_in::{fault_tolerant, spelled_out, synthesized};
 pub use cautions::cautions;
 pub use error::GainsError;
 pub use file::{ControllerFile, GainsFile, GroupGains};

@@ -9,7 +9,7 @@ use crate::agent::{FIRST_ATTITUDE, UAV_CHANNELS};
 use std::sync::Arc;
 
 /// The references of a team.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
     /// A sinusoid per agent and channel.
     Sinusoid(Vec<Vec<Sinusoid>>),
@@ -20,7 +20,7 @@ pub enum Reference {
 }
 
 /// A walk and when it begins.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct AgentWalk {
     /// The walk; robots that go the same way share it.
     pub walk: Arc<Walk>,

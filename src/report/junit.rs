@@ -1,7 +1,9 @@
 //! What became of a run as JUnit XML, for CI systems: a test case for the simulation, for the cross-check if there was
 //! to be one, and for each `[[require]]`.
 
-use super::problems::{differing, missing, reason, unchecked};
+use super::problems::{differing, missing, unchecked};
+use super::requirements::{demanded, limited, reason, title};
+use crate::run::compare::RunComparison;
 use crate::run::manifest::Manifest;
 use quick_junit::{NonSuccessKind, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::path::Path;
@@ -43,7 +45,7 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
             found,
         ));
     }
-    for (index, result) in manifest.requirements.iter().enumerate() {
+    for result in &manifest.requirements {
         let unmet = (!result.is_met()).then(|| {
             (
                 NonSuccessKind::Failure,
@@ -51,12 +53,34 @@ pub fn junit(manifest: &Manifest, out: &Path) -> Result<String, SerializeError> 
                 reason(manifest, result),
             )
         });
-        let name = format!(
-            "require[{index}]: failure rate of {} below {}",
-            result.subject(),
-            result.limit
-        );
-        suite.add_test_case(case(campaign, &name, 0.0, unmet));
+        suite.add_test_case(case(campaign, &title(result), 0.0, unmet));
+    }
+    report(suite)
+}
+
+/// What became of a comparison of two runs: a test case for each pair and for each limit that was given.
+///
+/// # Errors
+/// If they cannot be encoded.
+pub fn junit_of_comparison(found: &RunComparison) -> Result<String, SerializeError> {
+    let campaign = found.b.campaign.as_str();
+    let mut suite = TestSuite::new(campaign);
+    for (name, run) in [("a", &found.a), ("b", &found.b)] {
+        suite.add_property((name, &*run.path.display().to_string()));
+        let hash = format!("{name}_campaign_blake3");
+        suite.add_property((&*hash, &*run.campaign_blake3));
+    }
+    for pair in &found.pairs {
+        let worse = pair
+            .is_regression()
+            .then(|| (NonSuccessKind::Failure, "regression", pair.verdict.clone()));
+        let name = format!("{} is not worse than {}", pair.b, pair.a);
+        suite.add_test_case(case(campaign, &name, 0.0, worse));
+    }
+    for result in &found.requirements {
+        let unmet =
+            (!result.is_met()).then(|| (NonSuccessKind::Failure, "limit", demanded(result)));
+        suite.add_test_case(case(campaign, &limited(result), 0.0, unmet));
     }
     report(suite)
 }

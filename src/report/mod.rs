@@ -3,18 +3,22 @@
 //! Run data (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it
 //! looks).
 
+mod comparison;
 mod episode;
 pub mod junit;
 pub mod notes;
 pub(crate) mod page;
 pub mod paper;
 pub mod problems;
+pub mod requirements;
 mod run_data;
 pub(crate) mod section;
 pub mod terminal;
 mod tuning;
 
+pub use comparison::{comparison, regressions};
 pub use episode::{Trace, trace};
+pub use page::markdown::Length;
 pub use run_data::ReportError;
 pub use tuning::tuning;
 
@@ -23,22 +27,23 @@ use crate::run::directory::OutputDir;
 use crate::run::error::REPORTS;
 use page::document::Document;
 use page::{html, markdown};
-use problems::{shortcoming, unmet};
+use problems::shortcoming;
+use requirements::unmet;
 use run_data::RunData;
-use section::{conditions, errors, failures, fairness, gains, provenance, strata};
+use section::{band, conditions, errors, failures, fairness, flights, gains, provenance, strata};
 use std::path::Path;
 
-/// Writes `report.html` and `report.md` of the run in a directory.
+/// Writes `report.html` and `report.md` of the run in a directory, the latter at some length.
 ///
 /// # Errors
 /// If the directory holds no run, or cannot be written.
-pub fn report(dir: &Path) -> Result<(), ReportError> {
+pub fn report(dir: &Path, length: Length) -> Result<(), ReportError> {
     let data = RunData::read(dir)?;
     let document = document(&data);
     let out = OutputDir::existing(dir);
     let [html, markdown] = REPORTS;
     out.write(html, html::html(&document).as_bytes())?;
-    out.write(markdown, markdown::markdown(&document).as_bytes())?;
+    out.write(markdown, markdown::markdown(&document, length).as_bytes())?;
     Ok(())
 }
 
@@ -48,6 +53,7 @@ fn document(data: &RunData) -> Document {
     let wrong = [shortcoming(manifest, &data.dir), unmet(manifest)];
     let sections = [
         fairness::section(data),
+        flights::section(data),
         Some(failures::section(data)),
         Some(errors::pairs(data)),
         Some(errors::distributions(data)),
@@ -72,7 +78,9 @@ fn document(data: &RunData) -> Document {
             campaign.controllers.join(", "),
             manifest.seed
         ),
+        about: campaign.description.clone(),
         lead,
+        band: band::band(data),
         warnings: wrong.into_iter().flatten().collect(),
         sections: sections.into_iter().flatten().collect(),
     }

@@ -1,12 +1,7 @@
-//! What is wrong with a run, in words, as its manifest tells: why it is not to be relied on, and which requirements do
-//! not hold.
+//! Why a run is not to be relied on, in words, as its manifest tells.
 
-use crate::campaign::ALL;
-use crate::results::RequirementResult;
 use crate::run::manifest::Manifest;
 use crate::simulation::cross_check::{ERROR_LIMIT, RMSE_LIMIT};
-use crate::statistics::{LEVEL, runs_needed, sequential_runs_needed};
-use crate::util::format::rounded_up;
 use std::path::Path;
 
 /// Why the result of a run, written to `out`, is not to be relied on, one reason a line: episodes are missing, or the
@@ -60,53 +55,4 @@ pub(crate) fn differing(manifest: &Manifest) -> Option<String> {
             check.not_repeated
         )
     })
-}
-
-/// The requirements that do not hold, each with the reason and what to do: one a line; none if all hold.
-#[must_use]
-pub fn unmet(manifest: &Manifest) -> Option<String> {
-    let unmet = manifest
-        .requirements
-        .iter()
-        .enumerate()
-        .filter(|(_, result)| !result.is_met());
-    let lines: Vec<String> = unmet
-        .map(|(index, result)| {
-            format!(
-                "{}: require[{index}].failure_rate_upper_95 = {}: {}",
-                manifest.campaign_path,
-                result.limit,
-                reason(manifest, result)
-            )
-        })
-        .collect();
-    (!lines.is_empty()).then(|| lines.join("\n"))
-}
-
-/// Why a requirement does not hold, and what to do.
-pub(crate) fn reason(manifest: &Manifest, result: &RequirementResult) -> String {
-    let place = if result.stratum == ALL {
-        String::new()
-    } else {
-        format!(" of the stratum {:?}", result.stratum)
-    };
-    let needed = match manifest.stopped {
-        Some(_) => sequential_runs_needed,
-        None => runs_needed,
-    };
-    let remedy = match needed(result.limit, LEVEL, result.failed) {
-        Some(enough) if result.failed == 0 => format!("simulate at least {enough} episodes"),
-        Some(enough) if result.rate() < result.limit => format!(
-            "simulate at least {enough} episodes, of which no more may fail, or change the controller or the limit"
-        ),
-        _ => "change the controller or the limit".to_string(),
-    };
-    format!(
-        "{:?} failed in {} of {} episodes{place}, so with 95 % confidence its failure rate is known only to be below {}; \
-         {remedy}",
-        result.controller,
-        result.failed,
-        result.n,
-        rounded_up(result.upper_95, 4),
-    )
 }

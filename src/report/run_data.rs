@@ -45,6 +45,8 @@ pub(crate) struct RunData {
     pub(crate) screening: TableReader,
     pub(crate) ranking: TableReader,
     pub(crate) worst: TableReader,
+    /// Error and command over time in two flights.
+    pub(crate) flights: TableReader,
 }
 
 impl RunData {
@@ -73,6 +75,7 @@ impl RunData {
             screening: all("screening")?,
             ranking: all("ranking")?,
             worst: all("worst")?,
+            flights: all("flights")?,
             dir: dir.to_path_buf(),
             manifest,
             campaign,

@@ -1,8 +1,9 @@
 //! The page of a search: what it reaches, within which limits, how it went, and what a smaller error is paid with.
 
 use super::page::document::{Block, Cell, Document, Figure, Grid, LegendEntry, Section};
+use super::page::html;
+use super::page::markdown::{self, Length};
 use super::page::plot::{Axis, Color, Mark, Plot, Stroke};
-use super::page::{html, markdown};
 use crate::campaign::{Bound, MeasuredChannels, Side};
 use crate::results::Measured;
 use crate::run::tune::{Evaluation, Tuning};
@@ -31,8 +32,12 @@ pub fn tuning(tuning: &Tuning) -> [String; 2] {
         lead: lead(tuning),
         warnings: warnings(tuning),
         sections: sections.into(),
+        ..Document::default()
     };
-    [html::html(&document), markdown::markdown(&document)]
+    [
+        html::html(&document),
+        markdown::markdown(&document, Length::Brief),
+    ]
 }
 
 /// What was done, in a line.

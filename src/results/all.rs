@@ -1,6 +1,7 @@
 //! Every statistic of a run at once.
 
 use super::fairness::{Terms, terms, unlike};
+use super::flights::{Pace, add_paces, chattering};
 use super::paired::{PairedComparison, compare};
 use super::requirements::{RequirementResult, requirements};
 use super::scores::Scores;
@@ -47,22 +48,31 @@ pub struct Results {
 }
 
 impl Results {
-    /// The statistics of a run's scores; the permutations of the sensitivity analysis take the threads of the pool.
+    /// The statistics of a run's scores, and of how restless the commands of its flights are; the permutations of the
+    /// sensitivity analysis take the threads of the pool.
     #[must_use]
-    pub fn of(campaign: &Campaign, gains: &[GainSet], scores: &Scores, pool: &ThreadPool) -> Self {
-        let terms = terms(campaign, gains, scores);
+    pub fn of(
+        campaign: &Campaign,
+        gains: &[GainSet],
+        scores: &Scores,
+        paces: &[Pace],
+        pool: &ThreadPool,
+    ) -> Self {
+        let mut terms = terms(campaign, gains, scores);
+        add_paces(&mut terms, paces);
+        let chattering = chattering(&terms);
         let summary = summarise(campaign, scores);
         let comparisons = compare(campaign, scores);
         let screenings = screen(campaign, scores);
         Self {
-            verdict: verdict(campaign, &summary, &comparisons),
+            verdict: verdict(campaign, &summary, &comparisons, &chattering),
             unlike: unlike(&terms),
             harm: harm(&screenings),
             terms,
             failures: failure_rates(campaign, scores),
             summary,
             comparisons,
-            requirements: requirements(campaign, scores),
+            requirements: requirements(campaign, gains, scores),
             screenings,
             ranking: pool.install(|| rank(campaign, scores)),
             worst: worst(campaign, scores),

@@ -124,7 +124,11 @@ pub fn fairness_table(terms: &[Terms]) -> Table {
             .real_if("noise_h2", margin(|own| own.noise_h2))
             .real_if("peak_command_p95", own.peak_command_p95)
             .real_if("effort_p50", own.effort_p50)
-            .real_if("saturated_share", own.saturated_share);
+            .real_if("saturated_share", own.saturated_share)
+            .real_if("nominal_settling_s", own.nominal_settling_s)
+            .real_if("settling_p50_s", own.settling_p50_s)
+            .real_if("reversals_per_s", own.reversals_per_s)
+            .real_if("command_rate_per_s", own.command_rate_per_s);
     }
     table
 }

@@ -3,11 +3,12 @@
 //! A smaller error that was bought with another bandwidth, smaller margins or more effort is not the merit of a
 //! structure.
 
-use super::scores::{CommandScores, Scores};
-use crate::campaign::{Campaign, ChannelsOfCampaign};
+use super::numbers::{of_episodes, sorted};
+use super::scores::Scores;
+use crate::campaign::{Campaign, EpisodeNumber};
 use crate::controllers::GainSet;
 use crate::statistics::quantile;
-use crate::synthesis::Margins;
+use crate::synthesis::{Margins, settling_s};
 use crate::util::format::digits;
 use serde::Serialize;
 use std::sync::Arc;
@@ -33,6 +34,15 @@ pub struct Terms {
     pub effort_p50: Option<f64>,
     /// Share of the steps at a limit, in the mean over the episodes, of the channel where it is largest.
     pub saturated_share: Option<f64>,
+    /// How long the error of one channel takes to stay within 5 % of where it starts, s, without faults; none if it is
+    /// more than two minutes.
+    pub nominal_settling_s: Option<f64>,
+    /// Median over the episodes of when the last agent and channel is settled, s; none where half of them do not.
+    pub settling_p50_s: Option<f64>,
+    /// Changes of sign per second of the command that has most of them, in the median flight.
+    pub reversals_per_s: Option<f64>,
+    /// Rate of the commands in the median flight, in the root mean square, N/s or N m/s.
+    pub command_rate_per_s: Option<f64>,
 }
 
 /// The terms of every controller, in the order of the campaign.
@@ -40,36 +50,30 @@ pub struct Terms {
 pub fn terms(campaign: &Campaign, gains: &[GainSet], scores: &Scores) -> Vec<Terms> {
     let groups = campaign.channel_groups();
     let of_controller = |(index, name): (usize, &String)| {
-        let channels = gains
-            .iter()
-            .flat_map(move |set| &set.controllers[index].groups);
-        let mut channels = channels.map(|own| own.findings.as_ref());
-        let of_group = groups.iter().enumerate().map(|(place, of)| {
-            // Channel groups are counted within their group of agents.
-            let same = |own: &&ChannelsOfCampaign| own.group == of.group;
-            let before = groups[..place].iter().filter(same).count();
-            let of_agents = groups.iter().filter(same).count();
-            let commands = scores.groups[of.group].commands[index].iter();
-            let own: Vec<_> = commands.skip(before).step_by(of_agents).collect();
-            let sorted = |pick: fn(&CommandScores) -> f64| {
-                let mut sorted: Vec<f64> = own.iter().map(|own| pick(own)).collect();
-                sorted.sort_unstable_by(f64::total_cmp);
-                sorted
-            };
+        let of_group = groups.iter().map(|of| {
+            let values = |number| of_episodes(campaign, scores, index, number, of);
             let finite = |value: &f64| value.is_finite();
-            let shares = own.iter().map(|own| own.saturated).filter(finite);
+            let of_share = |number, share| {
+                let values = values(number);
+                quantile(&sorted(&values, 0..values.len()), share).filter(finite)
+            };
+            let shares = values(EpisodeNumber::SaturatedShare)
+                .into_iter()
+                .filter(finite);
             let shares: Vec<f64> = shares.collect();
             let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+            let own = &gains[of.group].controllers[index].groups[of.place];
             Terms {
                 controller: name.clone(),
                 group: of.name.clone(),
-                margins: channels
-                    .next()
-                    .flatten()
-                    .map(|found| found.analysis.margins),
-                peak_command_p95: quantile(&sorted(|own| own.peak), 0.95).filter(finite),
-                effort_p50: quantile(&sorted(|own| own.effort), 0.5).filter(finite),
+                margins: own.findings.as_ref().map(|found| found.analysis.margins),
+                peak_command_p95: of_share(EpisodeNumber::PeakCommand, 0.95),
+                effort_p50: of_share(EpisodeNumber::Effort, 0.5),
                 saturated_share: Some(mean).filter(finite),
+                nominal_settling_s: settling_s(&own.gains),
+                settling_p50_s: of_share(EpisodeNumber::Settling, 0.5),
+                reversals_per_s: None,
+                command_rate_per_s: None,
             }
         });
         of_group.collect::<Vec<_>>()
@@ -143,6 +147,12 @@ fn differences(own: &Terms, other: &Terms) -> Vec<String> {
         "N^2 s or N^2 m^2 s",
         own.effort_p50,
         other.effort_p50,
+    );
+    compare(
+        "settled after (median)",
+        "s",
+        own.settling_p50_s,
+        other.settling_p50_s,
     );
     if let (Some(own), Some(other)) = (own.saturated_share, other.saturated_share)
         && (own - other).abs() > UNLIKE_SHARE

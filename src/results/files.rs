@@ -2,6 +2,7 @@
 
 use super::all::Results;
 use super::columns::{comparison_table, fairness_table, screening_table, summary_table};
+use super::flights::Flights;
 use super::sensitivity::{ranking_table, worst_table};
 use super::table::Table;
 use super::tables::Tables;
@@ -17,16 +18,24 @@ pub struct Found<'a> {
     pub tables: &'a Tables,
     /// Every statistic on it.
     pub results: &'a Results,
+    /// Flights that were simulated again.
+    pub flights: &'a Flights,
 }
 
 impl<'a> Found<'a> {
     /// What a campaign's run has found.
     #[must_use]
-    pub fn new(campaign: &'a Campaign, tables: &'a Tables, results: &'a Results) -> Self {
+    pub fn new(
+        campaign: &'a Campaign,
+        tables: &'a Tables,
+        results: &'a Results,
+        flights: &'a Flights,
+    ) -> Self {
         Self {
             campaign,
             tables,
             results,
+            flights,
         }
     }
 }
@@ -86,5 +95,10 @@ pub const RUN_TABLES: &[RunTable] = &[
         name: "worst",
         is_large: false,
         make: |found| Cow::Owned(worst_table(&found.results.worst)),
+    },
+    RunTable {
+        name: "flights",
+        is_large: false,
+        make: |found| Cow::Borrowed(&found.flights.table),
     },
 ];

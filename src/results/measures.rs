@@ -1,13 +1,12 @@
 //! The numbers that a controller is judged by, of a run's scores and gains.
 
+use super::numbers::{of_episodes, sorted};
 use super::paired::Measured;
-use super::scores::{CommandScores, Scores, Status};
-use super::team::{Layout, team_rmse};
-use crate::campaign::{Campaign, EpisodeNumber, LoopNumber, Measure, MeasuredChannels};
+use super::scores::{GroupScores, Scores, Status};
+use crate::campaign::{AgentGroup, Campaign, LoopNumber, Measure, MeasuredChannels};
 use crate::controllers::GainSet;
 use crate::random::Method;
 use crate::statistics::{quantile, quantile_interval, wilson};
-use crate::synthesis::Margins;
 
 /// What is measured of a controller in all episodes, with its interval at a confidence level where chance is in it;
 /// infinite where too many episodes diverged. None of no episodes, and of gains of which nothing is known.
@@ -24,100 +23,85 @@ pub fn measured(
         Measure::FailureRate => {
             let status = &scores.status[controller];
             let failed = status.iter().filter(|own| **own != Status::Ok).count() as u64;
-            let n = status.len() as u64;
-            let interval = campaign.allows(Method::FailureRate);
-            (n > 0).then(|| Measured {
-                value: failed as f64 / n as f64,
-                interval: interval.then(|| wilson(failed, n, level)),
-            })
+            rate(campaign, failed, status.len() as u64, level)
+        }
+        Measure::Survival { at_s } => {
+            let failed = failed_by(campaign, scores, controller, *at_s);
+            let survived = failed.iter().filter(|failed| !**failed).count() as u64;
+            rate(campaign, survived, failed.len() as u64, level)
         }
         Measure::Episodes {
             number,
             channels,
             share,
         } => {
-            let sorted = sorted(campaign, scores, controller, *number, channels);
+            let of = campaign.channel_groups().swap_remove(channels.index);
+            let values = of_episodes(campaign, scores, controller, *number, &of);
+            let sorted = sorted(&values, 0..values.len());
             let interval = campaign.allows(Method::Quantile);
             Some(Measured {
                 value: quantile(&sorted, *share)?,
                 interval: quantile_interval(&sorted, *share, level).filter(|_| interval),
             })
         }
-        Measure::Loop { number, channels } => {
-            let margins = margins(campaign, gains, controller, channels.index)?;
-            let value = match number {
-                LoopNumber::DelayMargin => margins.delay_margin_ms,
-                LoopNumber::PhaseMargin => margins.phase_margin_deg,
-                LoopNumber::SensitivityPeak => margins.sensitivity_peak,
-                LoopNumber::NoisePeak => margins.noise_peak,
-                LoopNumber::NoiseH2 => margins.noise_h2,
-            };
-            Some(Measured {
-                value,
-                interval: None,
-            })
-        }
+        Measure::Loop { number, channels } => Some(Measured {
+            value: of_loop(campaign, gains, controller, *number, channels)?,
+            interval: None,
+        }),
     }
 }
 
-/// A number of each episode, smallest first; infinite where an agent diverged.
-fn sorted(
-    campaign: &Campaign,
-    scores: &Scores,
-    controller: usize,
-    number: EpisodeNumber,
-    channels: &MeasuredChannels,
-) -> Vec<f64> {
-    let all = campaign.channel_groups();
-    let of = &all[channels.index];
-    let layout = Layout::new(campaign, of);
-    let own = layout.scores(scores);
-    let of_commands = |pick: fn(&CommandScores) -> f64| {
-        // Channel groups are counted within their group of agents.
-        let of_agents = all.iter().filter(|other| other.group == of.group).count();
-        let before = all[..channels.index]
-            .iter()
-            .filter(|other| other.group == of.group)
-            .count();
-        let commands = own.commands[controller]
-            .iter()
-            .skip(before)
-            .step_by(of_agents);
-        let finite = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        commands.map(|own| finite(pick(own))).collect::<Vec<_>>()
-    };
-    let mut values = match number {
-        EpisodeNumber::Rmse => team_rmse(scores, controller, &layout),
-        EpisodeNumber::MaxAbs => {
-            let of_episode = |episode: usize| match own.status[controller][episode] {
-                Status::Diverged => f64::INFINITY,
-                _ => layout
-                    .of(&own.max_abs[controller], episode)
-                    .fold(0.0, f64::max),
-            };
-            (0..scores.episodes()).map(of_episode).collect()
-        }
-        EpisodeNumber::PeakCommand => of_commands(|own| own.peak),
-        EpisodeNumber::Effort => of_commands(|own| own.effort),
-        EpisodeNumber::SaturatedShare => of_commands(|own| own.saturated),
-    };
-    values.sort_unstable_by(f64::total_cmp);
-    values
-}
-
-/// The margins of a controller on one of the campaign's channel groups.
-fn margins(
+/// A number of a controller's loop on one of the campaign's channel groups; none of gains of which it is not known.
+#[must_use]
+pub fn of_loop(
     campaign: &Campaign,
     gains: &[GainSet],
     controller: usize,
-    index: usize,
-) -> Option<Margins> {
-    let all = campaign.channel_groups();
-    let group = all[index].group;
-    let before = all[..index]
-        .iter()
-        .filter(|other| other.group == group)
-        .count();
-    let own = &gains[group].controllers[controller].groups[before];
-    Some(own.findings.as_ref()?.analysis.margins)
+    number: LoopNumber,
+    channels: &MeasuredChannels,
+) -> Option<f64> {
+    let of = campaign.channel_groups().swap_remove(channels.index);
+    let own = &gains[of.group].controllers[controller].groups[of.place];
+    let found = own.findings.as_ref()?;
+    let margins = &found.analysis.margins;
+    Some(match number {
+        LoopNumber::DelayMargin => margins.delay_margin_ms,
+        LoopNumber::PhaseMargin => margins.phase_margin_deg,
+        LoopNumber::SensitivityPeak => margins.sensitivity_peak,
+        LoopNumber::NoisePeak => margins.noise_peak,
+        LoopNumber::NoiseH2 => margins.noise_h2,
+        LoopNumber::CertifiedRho => found.certificate.as_ref()?.rho,
+    })
+}
+
+/// Failed episodes among all.
+fn rate(campaign: &Campaign, failed: u64, n: u64, level: f64) -> Option<Measured> {
+    let interval = campaign.allows(Method::FailureRate);
+    (n > 0).then(|| Measured {
+        value: failed as f64 / n as f64,
+        interval: interval.then(|| wilson(failed, n, level)),
+    })
+}
+
+/// Whether an episode has failed by a time under a controller, `[episode]`. What breaks a limit of the RMS error
+/// fails at the end.
+pub(super) fn failed_by(
+    campaign: &Campaign,
+    scores: &Scores,
+    controller: usize,
+    at_s: f64,
+) -> Vec<bool> {
+    let end = campaign.time.steps;
+    let of_episode = |episode: usize| {
+        let of_group = |(group, own): (&AgentGroup, &GroupScores)| {
+            let agents = episode * group.team..(episode + 1) * group.team;
+            let steps = own.failed_step[controller][agents].iter().flatten();
+            let at_end = own.status[controller][episode] != Status::Ok;
+            steps.copied().chain(at_end.then_some(end)).min()
+        };
+        let groups = campaign.groups().iter().zip(&scores.groups);
+        let first = groups.filter_map(of_group).min();
+        first.is_some_and(|step| campaign.time.shown_s(step) <= at_s)
+    };
+    (0..scores.episodes()).map(of_episode).collect()
 }

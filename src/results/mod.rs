@@ -11,9 +11,11 @@
 
 mod all;
 mod columns;
-pub mod fairness;
+mod fairness;
 pub mod files;
+pub mod flights;
 pub mod measures;
+mod numbers;
 mod paired;
 mod replicates;
 mod requirements;
@@ -30,10 +32,11 @@ mod worst_fault;
 
 pub use all::Results;
 pub use columns::{comparison_table, fairness_table, screening_table, summary_table};
-pub use paired::{Measured, PairedComparison, Ratio, compare};
+pub use fairness::{Terms, terms, unlike};
+pub use paired::{Measured, PairedComparison, Ratio, compare, compare_pairs};
 pub use replicates::{FEWEST_REPLICATES, Replicated};
-pub use requirements::{RequirementResult, requirements};
+pub use requirements::{RequirementResult, can_be_judged, requirements};
 pub use screening::{FaultEffect, Growth, Screening, screen};
 pub use summary::{FailureRate, MetricQuantiles, Quantile, RateMethod, failure_rates, summarise};
-pub use verdict::{how_sure, verdict};
+pub use verdict::{Favour, how_sure, judged, verdict};
 pub use worst_fault::harm;

@@ -108,10 +108,21 @@ impl Ratio {
 /// Every pair of controllers, in the campaign's order: in all episodes, then in each stratum.
 #[must_use]
 pub fn compare(campaign: &Campaign, scores: &Scores) -> Vec<PairedComparison> {
-    let parts = parts(campaign, scores);
     let count = campaign.controllers.len();
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+    compare_pairs(campaign, scores, pairs)
+}
+
+/// Some pairs of controllers, `[first, second]`, in this order: in all episodes, then in each stratum.
+#[must_use]
+pub fn compare_pairs(
+    campaign: &Campaign,
+    scores: &Scores,
+    pairs: impl IntoIterator<Item = [usize; 2]>,
+) -> Vec<PairedComparison> {
+    let parts = parts(campaign, scores);
     let mut comparisons: Vec<PairedComparison> = pairs
+        .into_iter()
         .flat_map(|pair| compare_pair(campaign, scores, pair, &parts))
         .collect();
     let p_values: Option<Vec<f64>> = comparisons.iter().map(|own| own.mid_p).collect();

@@ -4,7 +4,6 @@ use crate::campaign::AgentGroup;
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
 use serde::Serialize;
-use std::ops::Range;
 
 /// How an agent or an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -71,47 +70,70 @@ pub struct GroupScores {
     pub max_abs: Vec<Vec<f64>>,
     /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
     pub failed_step: Vec<Vec<Option<u32>>>,
-    /// What the commands were, `[controller]` then episode, channel group in one list.
-    pub commands: Vec<Vec<CommandScores>>,
+    /// What else they showed, `[controller]` then episode, channel group in one list.
+    pub channel_groups: Vec<Vec<ChannelGroupScores>>,
 }
 
-/// What the commands of a group of agents were on a channel group of an episode.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct CommandScores {
+/// What a group of agents showed on a channel group of an episode, beside its errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChannelGroupScores {
     /// The largest |u| of any agent and channel, N or N m; infinite, as the effort is, where an agent diverged.
     pub peak: f64,
     /// The integral of u^2, in the mean over agents and channels.
     pub effort: f64,
     /// The largest share of the steps at a limit of any agent and channel; not a number where an agent diverged.
     pub saturated: f64,
+    /// When the last agent and channel was settled, s; infinite where one did not settle.
+    pub settling_s: f64,
+    /// How long after the first fault of an agent its channels were settled again, s, at the longest; infinite where
+    /// one did not settle, not a number where no fault began later than the episode.
+    pub recovery_s: f64,
 }
 
-impl CommandScores {
-    /// Of some channels of all agents; infinite where an agent diverged.
-    pub(super) fn of<'a>(
-        outcomes: impl Iterator<Item = &'a AgentOutcome>,
-        channels: Range<usize>,
-    ) -> Self {
-        let mut all = Self::default();
+/// What one channel of an agent showed, beside its error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ChannelScores {
+    pub(crate) peak: f64,
+    pub(crate) effort: f64,
+    pub(crate) saturated: f64,
+    /// Infinite where it did not settle.
+    pub(crate) settling_s: f64,
+    /// Infinite where it did not settle again; none where no fault began.
+    pub(crate) recovery_s: Option<f64>,
+}
+
+impl ChannelGroupScores {
+    /// Of all channels of all agents.
+    pub(crate) fn of(channels: impl Iterator<Item = ChannelScores>) -> Self {
+        let mut all = Self {
+            peak: 0.0,
+            effort: 0.0,
+            saturated: 0.0,
+            settling_s: 0.0,
+            recovery_s: f64::NAN,
+        };
         let mut count = 0.0;
-        for outcome in outcomes {
-            if outcome.diverged {
-                return Self {
-                    peak: f64::INFINITY,
-                    effort: f64::INFINITY,
-                    saturated: f64::NAN,
-                };
-            }
-            for metrics in &outcome.channels[channels.clone()] {
-                all.peak = all.peak.max(metrics.u_max);
-                all.effort += metrics.effort;
-                all.saturated = all.saturated.max(metrics.saturated_fraction);
-                count += 1.0;
-            }
+        for own in channels {
+            all.peak = all.peak.max(own.peak);
+            all.effort += own.effort;
+            all.saturated = all.saturated.max(own.saturated);
+            all.settling_s = all.settling_s.max(own.settling_s);
+            // What is not a number is less than every other number here.
+            all.recovery_s = all.recovery_s.max(own.recovery_s.unwrap_or(f64::NAN));
+            count += 1.0;
         }
         all.effort /= count;
         all
     }
+
+    /// Where an agent diverged.
+    pub(crate) const DIVERGED: Self = Self {
+        peak: f64::INFINITY,
+        effort: f64::INFINITY,
+        saturated: f64::NAN,
+        settling_s: f64::INFINITY,
+        recovery_s: f64::INFINITY,
+    };
 }
 
 impl Scores {
@@ -124,13 +146,13 @@ impl Scores {
 
 impl GroupScores {
     /// Of so many controllers, nothing yet.
-    pub(super) fn new(controllers: usize) -> Self {
+    pub(crate) fn new(controllers: usize) -> Self {
         Self {
             status: vec![Vec::new(); controllers],
             rmse: vec![Vec::new(); controllers],
             max_abs: vec![Vec::new(); controllers],
             failed_step: vec![Vec::new(); controllers],
-            commands: vec![Vec::new(); controllers],
+            channel_groups: vec![Vec::new(); controllers],
         }
     }
 

@@ -247,6 +247,14 @@ pub fn worst(campaign: &Campaign, scores: &Scores) -> Vec<WorstEpisode> {
     controllers.flat_map(of_controller).collect()
 }
 
+/// All episodes under a controller, the worst first.
+pub(super) fn order(campaign: &Campaign, scores: &Scores, controller: usize) -> Vec<usize> {
+    let of_episode = |episode| Bad::of(campaign, scores, controller, episode);
+    let mut bad: Vec<Bad> = (0..scores.episodes()).map(of_episode).collect();
+    bad.sort_by(Bad::order);
+    bad.iter().map(|bad| bad.episode).collect()
+}
+
 /// How bad an episode was under a controller.
 struct Bad {
     status: Status,

@@ -1,13 +1,13 @@
 //! How often each controller failed, and how large its errors were.
 
+use super::numbers::{of_episodes, sorted};
 use super::replicates::over_replicates;
 use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::team::Layout;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, ChannelsOfCampaign, EpisodeNumber};
 use crate::random::Method;
 use crate::statistics::{
-    Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, rms, sequential_interval,
+    Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, sequential_interval,
     sequential_upper, wilson,
 };
 use serde::ser::SerializeMap;
@@ -219,7 +219,7 @@ pub struct MetricQuantiles {
     /// Failures of the group's agents alone, where the campaign has several groups.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub of_group: Option<FailureRate>,
-    /// "rmse" or "max_abs".
+    /// The name of an [`EpisodeNumber`].
     pub metric: &'static str,
     /// "position" (m), "attitude" or "joints" (rad), with the name of the agents' group in front where it has one.
     pub group: Arc<str>,
@@ -262,26 +262,24 @@ pub fn failure_rates(campaign: &Campaign, scores: &Scores) -> Vec<FailureRate> {
 pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
     let parts = parts(campaign, scores);
     let intervals = campaign.allows(Method::Quantile);
+    let groups = campaign.channel_groups();
     let mut rows = Vec::new();
     for controller in 0..campaign.controllers.len() {
+        let numbers_of = |of: &ChannelsOfCampaign| {
+            let all = EpisodeNumber::ALL.iter();
+            let of_number = |&number| {
+                let values = of_episodes(campaign, scores, controller, number, of);
+                (number, values)
+            };
+            all.map(of_number).collect::<Vec<_>>()
+        };
+        let numbers: Vec<_> = groups.iter().map(numbers_of).collect();
         for part in &parts {
             let failures = FailureRate::of(campaign, scores, controller, part);
             let of_groups = FailureRate::of_groups(campaign, scores, controller, part);
-            for channels in campaign.channel_groups() {
-                let layout = Layout::new(campaign, &channels);
-                let own = layout.scores(scores);
-                let status = &own.status[controller];
-                for (metric, values) in [("rmse", &own.rmse), ("max_abs", &own.max_abs)] {
-                    let of_episode = |&episode: &usize| {
-                        let of_team = layout.of(&values[controller], episode);
-                        match status[episode] {
-                            Status::Diverged => f64::INFINITY,
-                            _ if metric == "rmse" => rms(of_team),
-                            _ => of_team.fold(0.0, f64::max),
-                        }
-                    };
-                    let mut sorted: Vec<f64> = part.episodes.iter().map(of_episode).collect();
-                    sorted.sort_unstable_by(f64::total_cmp);
+            for (channels, numbers) in groups.iter().zip(&numbers) {
+                for (number, values) in numbers {
+                    let sorted = sorted(values, part.episodes.iter().copied());
                     let of_share = |q| {
                         let interval = quantile_interval(&sorted, q, LEVEL);
                         Quantile {
@@ -293,7 +291,7 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                     rows.push(MetricQuantiles {
                         failures: failures.clone(),
                         of_group: of_groups.get(channels.group).cloned(),
-                        metric,
+                        metric: number.name(),
                         group: channels.name.clone(),
                         quantiles: QUANTILES.map(of_share).to_vec(),
                     });

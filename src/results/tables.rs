@@ -1,6 +1,6 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
-use super::scores::{CommandScores, GroupScores, Scores, Status, status};
+use super::scores::{ChannelGroupScores, ChannelScores, GroupScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
@@ -10,6 +10,7 @@ use crate::draw::{AgentDraw, AppliedEpisode};
 use crate::model::episode::AgentOutcome;
 use crate::model::inputs::later_onsets;
 use crate::model::metric::{ChannelOutcome, ERROR_METRICS, Metric, OTHER_METRICS};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The tables of a run, and the numbers that its statistics read.
@@ -109,8 +110,8 @@ impl Tables {
         let own_worst = judged.iter().map(|agent| agent.status).max();
         scores.status[controller].push(own_worst.unwrap_or(Status::Ok));
         for ChannelGroup { channels, .. } in group.channel_groups() {
-            let outcomes = judged.iter().map(|agent| agent.outcome);
-            scores.commands[controller].push(CommandScores::of(outcomes, channels));
+            let of_episode = of_agents(group.time, judged, &channels);
+            scores.channel_groups[controller].push(of_episode);
         }
         for (place, (judged, draw)) in judged.iter().zip(&applied.agents).enumerate() {
             let key = |row: &mut Row<'_>| {
@@ -143,6 +144,19 @@ impl Tables {
             }
         }
     }
+}
+
+/// What agents showed on some of their channels, beside the errors.
+fn of_agents(
+    time: Time,
+    judged: &[AgentVerdict<'_>],
+    channels: &Range<usize>,
+) -> ChannelGroupScores {
+    if judged.iter().any(|agent| agent.outcome.diverged) {
+        return ChannelGroupScores::DIVERGED;
+    }
+    let agents = judged.iter();
+    ChannelGroupScores::of(agents.flat_map(|agent| agent.of_channels(time, channels)))
 }
 
 /// Whether an agent has a fault of its group.
@@ -245,6 +259,22 @@ impl<'a> AgentVerdict<'a> {
         let fault = self.first_fault?;
         let calm = self.calm_from(metrics.last_outside, time.steps)?;
         Some(f64::from(calm.saturating_sub(fault)) * time.step_s)
+    }
+
+    /// What each of some channels showed, beside its error.
+    fn of_channels(&self, time: Time, channels: &Range<usize>) -> Vec<ChannelScores> {
+        let never = |time_s: Option<f64>| time_s.unwrap_or(f64::INFINITY);
+        let channels = self.outcome.channels[channels.clone()].iter();
+        let scores = channels.map(|metrics| ChannelScores {
+            peak: metrics.u_max,
+            effort: metrics.effort,
+            saturated: metrics.saturated_fraction,
+            settling_s: never(self.settling_s(time, metrics)),
+            recovery_s: self
+                .first_fault
+                .map(|_| never(self.recovery_s(time, metrics))),
+        });
+        scores.collect()
     }
 
     fn calm_from(&self, last_outside: Option<u32>, end: u32) -> Option<u32> {

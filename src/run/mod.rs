@@ -1,24 +1,31 @@
 //! A whole run: gains, episodes, tables, statistics, files.
 
+pub mod compare;
 pub mod directory;
 pub mod error;
+mod flights;
 pub mod manifest;
 pub mod replay;
 pub mod replay_files;
+mod scores_of_run;
 pub(crate) mod table_reader;
 mod tables;
 pub mod tune;
 
 use crate::backend::gpu::{Gpu, GpuError};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError, cautions};
-use crate::results::Results;
 use crate::results::files::Found;
+use crate::results::flights::Flights;
+use crate::results::scores::Scores;
+use crate::results::{Results, can_be_judged};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
 use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, open, simulate};
 use directory::OutputDir;
 use error::{MANIFEST, OutputError};
+use flights::flights;
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
+use rayon::ThreadPool;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -31,6 +38,9 @@ pub enum RunError {
     /// No gains.
     #[error(transparent)]
     Gains(#[from] GainsError),
+    /// Something is required that is not known of the gains.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
     /// No directory to write.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -136,6 +146,7 @@ pub fn run_on(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
     let (gains, synthesis_s) = synthesized(campaign, progress)?;
+    can_be_judged(campaign, &gains)?;
     notes.extend(cautions(campaign, &gains));
 
     progress(Progress::Simulation);
@@ -167,13 +178,13 @@ pub fn run_on(
 
     unless_more_is_there(out, interrupted.as_ref(), episodes)?;
 
-    let start = Instant::now();
     progress(Progress::Statistics);
-    let results = Results::of(campaign, &gains, &tables.scores, &simulation.pool);
-    times.statistics_s += start.elapsed().as_secs_f64();
+    let (results, flights, statistics_s) =
+        statistics(campaign, &gains, &tables.scores, &simulation.pool);
+    times.statistics_s += statistics_s;
 
     progress(Progress::Writing);
-    let found = Found::new(campaign, &tables, &results);
+    let found = Found::new(campaign, &tables, &results, &flights);
     times.writing_s = write_tables(found, &gains, extras.csv, out)?;
     let mut robots = robots(campaign);
     let manifest = Manifest {
@@ -223,6 +234,19 @@ fn robots(campaign: &Campaign) -> BTreeMap<String, String> {
     groups
         .filter_map(|group| Some((group.name.to_string(), group.agent.file()?.text.clone())))
         .collect()
+}
+
+/// Every statistic, the flights that are looked at, and the time that they took, s.
+fn statistics(
+    campaign: &Campaign,
+    gains: &[GainSet],
+    scores: &Scores,
+    pool: &ThreadPool,
+) -> (Results, Flights, f64) {
+    let start = Instant::now();
+    let flights = pool.install(|| flights(campaign, gains, scores));
+    let results = Results::of(campaign, gains, scores, &flights.paces, pool);
+    (results, flights, start.elapsed().as_secs_f64())
 }
 
 /// Writes all but the manifest; returns the time that it took, s.

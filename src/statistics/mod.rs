@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | how often does a controller fail? | [`wilson`], [`clopper_pearson`] | score and exact binomial |
 //! | what can be claimed about its failure rate? | [`clopper_pearson_upper`] | exact one-sided bound |
-//! | how bad is its 95th percentile? | [`quantile()`], [`quantile_interval`] | order statistics |
+//! | how bad is its 95th percentile? | [`quantile()`], [`quantile_interval`], [`quantile_upper`] | order statistics |
 //! | does A fail less often than B? | [`mcnemar_mid_p`], [`paired_difference`] | mid-p, Tango's score |
 //! | by how much do two independent samples differ? | [`independent_difference`] | MOVER, Newcombe |
 //! | by how much is A's metric better? | [`median_bca`] | BCa with the ideal bootstrap |
@@ -54,9 +54,9 @@ pub use holm::holm;
 pub use interval::{Estimate, Interval, LEVEL, SIGNIFICANCE};
 pub use median::median_bca;
 pub(crate) use normal::normal_quantile;
-pub use paired::{PairedFailures, mcnemar_mid_p, paired_difference, win_rate};
+pub use paired::{PairedFailures, alike_needed, mcnemar_mid_p, paired_difference, win_rate};
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
-pub use quantile::{quantile, quantile_interval};
+pub use quantile::{quantile, quantile_interval, quantile_lower, quantile_upper};
 pub use rank::Ranked;
 pub use replicates::{replicate_mean, replicate_p};
 pub use root_mean_square::{rms, root_mean_square};

@@ -3,6 +3,7 @@
 use super::binomial;
 use super::interval::{Estimate, Interval, is_level};
 use super::normal::two_sided_z;
+use super::sample_size::fewest_runs;
 use super::search::bisect;
 use serde::Serialize;
 
@@ -58,6 +59,25 @@ pub fn mcnemar_mid_p(only_a: u64, only_b: u64) -> f64 {
 pub fn paired_difference(failures: &PairedFailures, level: f64) -> Option<Estimate> {
     let concordant = failures.both.saturating_add(failures.neither);
     score_difference(failures.only_a, failures.only_b, concordant, level)
+}
+
+/// The smallest number of episodes that end alike under both controllers and prove, by one end of
+/// Tango's interval, that their failure rates differ by at most `limit`, with one-sided
+/// `confidence`. `None` as in [`runs_needed`](super::runs_needed).
+pub fn alike_needed(limit: f64, confidence: f64) -> Option<u64> {
+    if !is_level(limit) || !is_level(confidence) || confidence <= 0.5 {
+        return None;
+    }
+    fewest_runs(0, |neither| {
+        let alike = PairedFailures {
+            both: 0,
+            only_a: 0,
+            only_b: 0,
+            neither,
+        };
+        let found = paired_difference(&alike, 2.0 * confidence - 1.0);
+        found.is_some_and(|found| found.interval.upper <= limit)
+    })
 }
 
 /// Share of episodes in which A is better than B, ties counted half.

@@ -32,19 +32,40 @@ pub fn quantile(sorted: &[f64], q: f64) -> Option<f64> {
 /// `None` if there are too few values for such ranks to exist (at 95 %: fewer than 6 for the
 /// median, 72 for q = 0.95, 368 for q = 0.99), or on the conditions of [`quantile()`].
 pub fn quantile_interval(sorted: &[f64], q: f64, level: f64) -> Option<Interval> {
+    if !is_level(level) {
+        return None;
+    }
+    let one_sided = f64::midpoint(1.0, level);
+    Some(Interval {
+        lower: quantile_lower(sorted, q, one_sided)?,
+        upper: quantile_upper(sorted, q, one_sided)?,
+    })
+}
+
+/// One-sided lower bound of the `q`-quantile, with confidence at least `level`: the lower end of
+/// [`quantile_interval`], which has half of the rest. `None` as there: at 95 % for fewer than 5 values
+/// for the median.
+pub fn quantile_lower(sorted: &[f64], q: f64, level: f64) -> Option<f64> {
     if !is_ascending(sorted) || !(0.0..=1.0).contains(&q) || !is_level(level) {
         return None;
     }
     let n = sorted.len();
-    let tail = (1.0 - level) / 2.0;
-    let tails = |rank: usize| binomial::tails(rank as u64, n as u64, q);
-    // The lower rank is the last one that the quantile stays below rarely enough.
-    let above_lower = first_rank(n, |rank| tails(rank).below > tail)?;
-    let upper = first_rank(n, |rank| tails(rank).from <= tail)?;
-    Some(Interval {
-        lower: sorted[above_lower.checked_sub(2)?],
-        upper: sorted[upper - 1],
-    })
+    let below = |rank: usize| binomial::tails(rank as u64, n as u64, q).below;
+    // The last rank that the quantile stays below rarely enough.
+    let above_lower = first_rank(n, |rank| below(rank) > 1.0 - level)?;
+    Some(sorted[above_lower.checked_sub(2)?])
+}
+
+/// One-sided upper bound of the `q`-quantile, with confidence at least `level`. `None` as in
+/// [`quantile_lower`]: at 95 % for fewer than 59 values for q = 0.95, 299 for q = 0.99.
+pub fn quantile_upper(sorted: &[f64], q: f64, level: f64) -> Option<f64> {
+    if !is_ascending(sorted) || !(0.0..=1.0).contains(&q) || !is_level(level) {
+        return None;
+    }
+    let n = sorted.len();
+    let from = |rank: usize| binomial::tails(rank as u64, n as u64, q).from;
+    let upper = first_rank(n, |rank| from(rank) <= 1.0 - level)?;
+    Some(sorted[upper - 1])
 }
 
 fn is_ascending(values: &[f64]) -> bool {

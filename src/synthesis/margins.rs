@@ -90,7 +90,7 @@ fn root_of_power(grid: &[f64], size: impl Fn(f64) -> Option<f64>) -> Option<f64>
 }
 
 /// The loop gain with the sign of negative feedback.
-struct LoopGain {
+pub(super) struct LoopGain {
     plant: Channel,
     /// Abar + Bbar K + L Cbar.
     observer: DMatrix<Complex<f64>>,
@@ -99,7 +99,7 @@ struct LoopGain {
 }
 
 impl LoopGain {
-    fn of(channel: &Channel, gains: &ControllerGains) -> Self {
+    pub(super) fn of(channel: &Channel, gains: &ControllerGains) -> Self {
         let (k, l) = (gains.k_matrix(), gains.l_matrix());
         let observer = &channel.a + &channel.b * &k + &l * &channel.c;
         Self {
@@ -115,10 +115,21 @@ impl LoopGain {
     }
 
     /// The size of the closed loop's response u / noise, noise on x and x'.
-    fn of_noise(&self, omega: f64) -> Option<f64> {
+    pub(super) fn of_noise(&self, omega: f64) -> Option<f64> {
         let open = self.of_measurements(omega)?;
         let gain = (&open * self.of_error(omega)?)[(0, 0)];
         Some(open.columns(1, 2).norm() / (gain + 1.0).norm())
+    }
+
+    /// The size of the error in answer to an acceleration, and in answer to an offset of what is measured, which enters
+    /// there.
+    pub(super) fn of_faults(&self, omega: f64, enters: &[f64; 3]) -> Option<[f64; 2]> {
+        let (open, plant) = (self.of_measurements(omega)?, self.of_error(omega)?);
+        let closed = (&open * &plant)[(0, 0)] + 1.0;
+        // The states are the integral of e, e and e'.
+        let error = plant[(1, 0)] / closed;
+        let enters = DMatrix::from_column_slice(3, 1, enters).map(Complex::from);
+        Some([error.norm(), (error * (open * enters)[(0, 0)]).norm()])
     }
 
     /// The measurements (3 x 1) in answer to the feedback acceleration.

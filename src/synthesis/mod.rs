@@ -26,6 +26,7 @@ mod observer;
 mod pid_shape;
 mod placed;
 mod preset;
+mod responses;
 mod riccati;
 mod smoothing;
 mod verify;
@@ -44,6 +45,7 @@ pub use observer::observer_riccati;
 pub use pid_shape::PidShape;
 pub use placed::{PLACED_RAD_S, placed_gains, poles_for_delay_margin};
 pub use preset::Preset;
+pub use responses::{Response, responses, settling_s};
 pub use smoothing::{Smoothing, SmoothingRule};
 pub use verify::{Check, LoopAnalysis, Verified, verify};
 

@@ -4,6 +4,8 @@ mod backends;
 mod bipeds;
 mod campaign_files;
 mod campaign_plans;
+mod chatter;
+mod compare;
 mod gains;
 mod groups;
 mod help;

@@ -1,5 +1,6 @@
 //! The report of a run: what it says, and what a browser makes of it.
 
+mod brief;
 mod browser;
 mod paper;
 
@@ -89,7 +90,12 @@ fn four_digits(value: f64) -> String {
 #[test]
 fn a_report_says_what_the_tables_say() {
     let run = Run::of("smoke", 12, &[]);
+    let brief = run.read("report.md");
+    urts_mc::report::report(&run.dir, urts_mc::report::Length::Full).unwrap();
     let (html, markdown) = (run.read("report.html"), run.read("report.md"));
+    // In brief it is what a comment on a pull request holds, and says so.
+    assert!(brief.len() < 65_536 && brief.len() < markdown.len());
+    assert!(brief.ends_with("In brief: the HTML report has the whole.\n"));
     for row in rows(&run.read("summary.csv")) {
         if row["metric"] != "rmse" || row["group"] != "position" || row["stratum"] != "all" {
             continue;

@@ -4,13 +4,14 @@ mod comparison;
 mod effect;
 mod fairness;
 mod ranking;
+mod requirements;
 
 use urts_mc::campaign::Campaign;
 use urts_mc::results::scores::{GroupScores, Scores, Status};
 
 /// Scores without a simulation, of a campaign of one group: how a controller, an episode and a channel (of any agent)
 /// fared, the status being the same for all channels.
-fn scores_of_channels(
+pub(crate) fn scores_of_channels(
     campaign: &Campaign,
     outcome: impl Fn(usize, usize, usize) -> (Status, f64),
 ) -> Scores {
@@ -33,7 +34,7 @@ fn scores_of_channels(
         status: status.clone(),
         groups: vec![GroupScores {
             failed_step: vec![vec![None; episodes * group.team]; rmse.len()],
-            commands: vec![Vec::new(); rmse.len()],
+            channel_groups: vec![Vec::new(); rmse.len()],
             max_abs: rmse.clone(),
             status,
             rmse,

@@ -1,5 +1,6 @@
 //! The directory of a run, and the search for parameters.
 
 mod cma_es;
+mod compare;
 mod digests;
 mod tune;

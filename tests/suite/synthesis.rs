@@ -22,6 +22,7 @@ mod pid_shape;
 mod placed;
 mod reference;
 mod refusals;
+mod responses;
 
 static GOLDEN: LazyLock<Value> =
     LazyLock::new(|| serde_json::from_str(include_str!("../golden/synthesis.json")).unwrap());

@@ -92,6 +92,8 @@ campaign_and_group! {
     CampaignFile {
         /// Name of the campaign and of its output folder.
         name: String,
+        /// What is tested and why, in a few sentences for the report.
+        description: Option<String>,
         /// Seed of every random number.
         seed: u64,
         /// Number of episodes.

@@ -62,7 +62,7 @@ pub struct StopFile {
     pub every: Option<u32>,
 }
 
-/// `[[require]]`
+/// `[[require]]`: a limit that has to be proved, with 95 % confidence where chance is in it.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RequireFile {
@@ -70,8 +70,19 @@ pub struct RequireFile {
     pub controller: String,
     /// The stratum in which it has to (default: all episodes).
     pub stratum: Option<String>,
-    /// Upper limit of the one-sided 95 % bound of the failure rate.
-    pub failure_rate_upper_95: f64,
+    /// In short for measure = "failure_rate" and at_most: upper limit of the one-sided 95 % bound of the failure rate.
+    pub failure_rate_upper_95: Option<f64>,
+    /// What is measured: a name with the channels that it is of (default: all, one after the other) and, where it
+    /// differs from episode to episode, a quantile: "rmse position p95", "survival_at_s 10", "delay_margin_ms".
+    pub measure: Option<String>,
+    /// Compared with another controller on the same episodes: the measure is of the ratio to that controller's number.
+    pub ratio_to: Option<String>,
+    /// The same of the difference from that controller's number.
+    pub difference_to: Option<String>,
+    /// Upper limit: the measure's one-sided 95 % upper bound may not be above it.
+    pub at_most: Option<f64>,
+    /// Lower limit: the measure's one-sided 95 % lower bound may not be below it.
+    pub at_least: Option<f64>,
 }
 
 /// The faults of a stratum's episodes.

@@ -8,6 +8,7 @@ mod fault_channels;
 mod group;
 mod plan;
 mod reference;
+mod requirement;
 mod sampling;
 mod synthesis;
 mod timing;
@@ -27,6 +28,8 @@ use synthesis::known_controllers;
 
 /// Steps that an episode may have: step numbers stay exact in single precision, half steps in 32 bits.
 const MAX_STEPS: f64 = 8_388_608.0;
+/// Longest description: it stands on the first screen of the report.
+const LONGEST_DESCRIPTION: usize = 1000;
 /// Memory that the reference tables of a campaign may take, bytes.
 const MAX_TABLE_BYTES: f64 = 4_294_967_296.0;
 
@@ -58,8 +61,9 @@ pub(super) fn validate(
         path: source.path.to_path_buf(),
         text: source.text.to_string(),
         overlay: source.overlay.to_vec(),
-        requirements: check.requirements(&file.require, &controllers, &strata, sampling)?,
+        requirements: Vec::new(),
         stop: check.stop(&file, &controllers, sampling)?,
+        description: check.description(file.description.as_deref())?,
         name: file.name,
         seed: file.seed,
         episodes: file.episodes,
@@ -69,8 +73,10 @@ pub(super) fn validate(
         sampling,
     });
     let groups = begun.into_iter().map(|group| group.finish(&common));
-    let mut campaign = Campaign::new(common.clone(), groups.collect::<Result<_, _>>()?);
+    let campaign = Campaign::new(common.clone(), groups.collect::<Result<_, _>>()?);
     check.can_prove(&campaign)?;
+    let requirements = check.requirements(&file.require, &campaign)?;
+    let mut campaign = campaign.with(|parts| parts.requirements = requirements);
     let tune = tune.map(|tune| check.tune(&tune, &campaign, &known));
     campaign.tune = tune.transpose()?.map(Arc::new);
     Ok(campaign)
@@ -126,6 +132,22 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// What a campaign is for, as one line.
+    fn description(&self, text: Option<&str>) -> Result<String, CampaignError> {
+        let words = text.unwrap_or_default().split_whitespace();
+        let line = words.collect::<Vec<_>>().join(" ");
+        let length = line.chars().count();
+        if length > LONGEST_DESCRIPTION || line.chars().any(char::is_control) {
+            return Err(self.invalid(
+                "description",
+                format!("{length} characters"),
+                &format!("a description has at most {LONGEST_DESCRIPTION} characters, none of which is a control character"),
+                "say it in fewer words",
+            ));
+        }
+        Ok(line)
+    }
+
     fn episodes(&self, episodes: u32) -> Result<(), CampaignError> {
         if episodes == 0 {
             return Err(self.invalid(
@@ -140,16 +162,11 @@ impl Check<'_> {
 
     /// Refuses to prove a rate of episodes that are all the same.
     fn can_prove(&self, campaign: &Campaign) -> Result<(), CampaignError> {
-        let key = match (&campaign.stop, campaign.requirements.is_empty()) {
-            (Some(_), _) => "stop",
-            (None, false) => "require[0]",
-            (None, true) => return Ok(()),
-        };
-        if campaign.is_random() {
+        if campaign.is_random() || campaign.stop.is_none() {
             return Ok(());
         }
         Err(self.invalid(
-            key,
+            "stop",
             "given",
             "nothing in the campaign is random: its episodes are all the same, and prove no rate",
             "draw something from a distribution, or remove it",

@@ -1,14 +1,11 @@
-//! `[sampling]`, `[stop]` and `[[require]]`: what the episodes are to show, and whether they can.
+//! `[sampling]` and `[stop]`: how the episodes are drawn, and when enough is known.
 
 use crate::campaign::check::Check;
-use crate::campaign::common::Requirement;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::parameter::Bounds;
-use crate::campaign::plan::{ALL, Goal, Sampling, Stop, Strata};
+use crate::campaign::plan::{Goal, Sampling, Stop};
 use crate::random::{MOST_ENTRIES, Method, allows};
 use crate::util::suggest::did_you_mean;
-use std::sync::Arc;
 
 /// Replicates of a design, if nothing else is asked for.
 const REPLICATES: u32 = 8;
@@ -183,68 +180,8 @@ impl Check<'_> {
         }))
     }
 
-    /// The conditions on the result.
-    pub(super) fn requirements(
-        &self,
-        files: &[RequireFile],
-        controllers: &[String],
-        strata: &Strata,
-        sampling: Sampling,
-    ) -> Result<Vec<Requirement>, CampaignError> {
-        let of_file = |(index, file): (usize, &RequireFile)| {
-            let table = format!("require[{index}]");
-            let key = format!("{table}.controller");
-            let controller = self.controller(&key, &file.controller, controllers)?;
-            let key = format!("{table}.failure_rate_upper_95");
-            let failure_rate_upper_95 =
-                self.number(&key, file.failure_rate_upper_95, Bounds::Share)?;
-            if !allows(sampling.design(), Method::FailureRate) {
-                return Err(self.invalid(
-                    key,
-                    in_toml(failure_rate_upper_95),
-                    "its bound takes independent episodes, which those of a sampling design are not",
-                    "set sampling.design = \"independent\", or remove the [[require]]",
-                ));
-            }
-            Ok(Requirement {
-                controller: controllers[controller].clone(),
-                stratum: self.required_stratum(&table, file, strata)?,
-                failure_rate_upper_95,
-            })
-        };
-        files.iter().enumerate().map(of_file).collect()
-    }
-
-    fn required_stratum(
-        &self,
-        table: &str,
-        file: &RequireFile,
-        strata: &Strata,
-    ) -> Result<Arc<str>, CampaignError> {
-        let wanted = file.stratum.as_deref().unwrap_or(ALL);
-        let names: Vec<&str> = strata.all().iter().map(|stratum| &*stratum.name).collect();
-        if wanted == ALL || names.contains(&wanted) {
-            return Ok(wanted.into());
-        }
-        let remedy = did_you_mean(
-            wanted,
-            names.iter().copied(),
-            "name one of them, or remove it",
-        );
-        let limit = match names.as_slice() {
-            [] => "the campaign has no [[strata]]".to_string(),
-            names => format!("the campaign's strata are {}", names.join(", ")),
-        };
-        Err(self.invalid(
-            format!("{table}.stratum"),
-            format!("{wanted:?}"),
-            &limit,
-            &remedy,
-        ))
-    }
-
     /// The index of a controller of the campaign.
-    fn controller(
+    pub(super) fn controller(
         &self,
         key: &str,
         name: &str,

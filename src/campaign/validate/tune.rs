@@ -3,8 +3,8 @@
 use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
-use crate::campaign::measure::{EpisodeNumber, LoopNumber, Measure, Misnamed};
-use crate::campaign::tune::{Bound, Limit, Side, Term, Tune};
+use crate::campaign::measure::{EpisodeNumber, LoopNumber, Measure, Misnamed, Side};
+use crate::campaign::tune::{Bound, Limit, Term, Tune};
 use crate::campaign::validated::Campaign;
 use crate::util::suggest::did_you_mean;
 use std::sync::Arc;
@@ -162,7 +162,7 @@ impl Check<'_> {
         campaign: &Campaign,
     ) -> Result<f64, CampaignError> {
         let (limit, channels) = match measure {
-            Measure::FailureRate => return Ok(1.0),
+            Measure::FailureRate | Measure::Survival { .. } => return Ok(1.0),
             Measure::Episodes {
                 number: EpisodeNumber::Rmse,
                 channels,
@@ -209,7 +209,7 @@ impl Check<'_> {
     }
 
     /// What has to hold.
-    fn limit(
+    pub(super) fn limit(
         &self,
         key: &str,
         text: &str,

@@ -23,7 +23,7 @@ const GAUSS_LEGENDRE: [(f64, f64); 4] = [
 ];
 
 /// Spline with its arc length s(x) = ∫ |dr/dx| dx.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
     pieces: Vec<Piece>,
     arcs: Vec<Arc>,
@@ -31,7 +31,7 @@ pub(super) struct Curve {
 }
 
 /// Part of a piece whose length one quadrature gives to [`QUADRATURE_TOLERANCE`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Arc {
     piece: usize,
     from: f64,

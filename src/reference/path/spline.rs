@@ -26,7 +26,7 @@ pub(super) struct PathPiece {
 ///
 /// It is the chord plus what the second derivatives at both ends add to it: where these vanish, the
 /// piece is exactly straight.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Piece {
     start: Vector,
     direction: Vector,

@@ -36,7 +36,7 @@ const ROUNDING_MARGIN: f64 = 1e-9;
 ///
 /// Position, velocity and acceleration are continuous, the latter two are the exact derivatives of
 /// the first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WaypointPath {
     curve: Curve,
     duration_s: f64,

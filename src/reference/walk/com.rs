@@ -12,7 +12,7 @@ const JERK_WEIGHT: f64 = 1e-8;
 const END_WEIGHT: f64 = 1.0;
 
 /// The planned centre of mass at the sampling instants.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CenterOfMass {
     /// (position, velocity, acceleration) of x and of y, m, m/s, m/s².
     pub states: Vec<[[f64; 3]; 2]>,

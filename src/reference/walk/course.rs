@@ -26,7 +26,7 @@ pub struct Placement {
 }
 
 /// The smoothed line σ'ₙ with its body directions COₙ, sampled evenly by arc length.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     samples: Vec<Placement>,
     length_m: f64,

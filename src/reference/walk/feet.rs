@@ -28,7 +28,7 @@ pub struct Ankle {
 }
 
 /// A foot's way from one foothold to the next.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Swing {
     /// The foot.
     pub foot: Foot,
@@ -45,7 +45,7 @@ pub struct Swing {
 }
 
 /// The footholds and swings of a walk.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Feet {
     start: [Placement; 2],
     ankle_height_m: f64,

@@ -15,7 +15,7 @@ use crate::reference::point::ReferencePoint;
 /// A planned walk with all intermediate results.
 ///
 /// Samples lie at the multiples of the gait's sampling period, the first at the time zero.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Walk {
     /// The gait.

@@ -7,12 +7,12 @@ use std::array::from_fn;
 ///
 /// It is held by its second derivatives at the knots (de Boor, A Practical Guide to Splines,
 /// ch. IV).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Spline<const N: usize> {
     knots: Vec<Knot<N>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Knot<const N: usize> {
     at: f64,
     value: [f64; N],

@@ -7,7 +7,7 @@ use super::gait::Gait;
 use crate::agent::robot::Robot;
 
 /// The reference of the zero moment point: linear between its corners, constant outside.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ZmpReference {
     corners: Vec<(f64, [f64; 2])>,
 }

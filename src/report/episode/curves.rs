@@ -34,7 +34,7 @@ impl Quantity {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Error => "tracking error e",
-            Self::State => "state x",
+            Self::State => "state",
             Self::ActuatorFault => "actuator fault f1",
             Self::SensorFault => "sensor fault f2",
             Self::Command => "command u",
@@ -44,7 +44,8 @@ impl Quantity {
     fn symbol(self) -> &'static str {
         match self {
             Self::Error => "e",
-            Self::State => "x",
+            // Not x: that is the name of a channel.
+            Self::State => "state",
             Self::ActuatorFault => "f1",
             Self::SensorFault => "f2",
             Self::Command => "u",
@@ -166,7 +167,7 @@ pub(super) fn panel(
         title: name.to_string(),
         x: Axis {
             range: Some((0.0, view.duration_s)),
-            ..Axis::new("t, s")
+            ..Axis::new("time, s")
         },
         y: Axis {
             range: frame.map(|frame| frame.range()),

@@ -1,6 +1,7 @@
 //! The figures of a replay: one episode under every controller of its campaign, as the paper's Figures 8 and 10 to 20
 //! show one.
 
+mod close_up;
 mod curves;
 mod encountered;
 mod episode_data;
@@ -48,6 +49,7 @@ fn document(view: &EpisodeView<'_>) -> Document {
     let campaign = view.campaign;
     let asked = view.asked();
     let mut sections = vec![errors(view), encountered::section(view)];
+    sections.extend(close_up::section(view));
     sections.extend(campaign.groups().iter().map(|group| match &group.agent {
         Agent::Uav(_) => path::section(view, group),
         Agent::Biped(biped) => walk::section(view, group, &biped.robot),
@@ -82,6 +84,7 @@ fn document(view: &EpisodeView<'_>) -> Document {
             })
             .collect(),
         sections,
+        ..Document::default()
     }
 }
 

@@ -52,7 +52,7 @@ pub(super) fn section(view: &EpisodeView<'_>, group: &AgentGroup) -> Section {
         caption,
     };
     Section::new(
-        sentence(&group.titled("paths")),
+        sentence(&group.titled("paths")).trim_end_matches('.'),
         vec![Block::Figure(figure)],
     )
 }

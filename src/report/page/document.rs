@@ -9,11 +9,29 @@ pub(crate) struct Document {
     pub(crate) title: String,
     /// What it is about, in a line.
     pub(crate) subtitle: String,
+    /// What is tested and why, in the words of who tests it; empty if nothing is said.
+    pub(crate) about: String,
     /// What matters most, a sentence each.
     pub(crate) lead: Vec<String>,
+    /// What is compared, at a glance.
+    pub(crate) band: Vec<Card>,
     /// What is wrong with the run.
     pub(crate) warnings: Vec<String>,
     pub(crate) sections: Vec<Section>,
+}
+
+/// Something that is compared, or asked, with its numbers in large figures.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Card {
+    pub(crate) name: String,
+    /// The colour that stands for it in all figures, if it has one.
+    pub(crate) color: Option<Color>,
+    /// What it is.
+    pub(crate) note: String,
+    /// Numbers, each with what it is.
+    pub(crate) numbers: Vec<(String, String)>,
+    /// Whether it holds, of something that is asked.
+    pub(crate) holds: Option<bool>,
 }
 
 /// A part of a report.

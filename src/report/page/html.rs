@@ -1,7 +1,8 @@
 //! A document as a page that needs nothing else: styles and drawings inside, no scripts.
 
 use super::clip_ids::renumbered;
-use super::document::{Block, Cell, Document, Figure, Grid, Scale, Section, Spread, Swatch};
+use super::document::{Block, Card, Cell, Document, Figure, Grid, Scale, Section, Spread, Swatch};
+use super::plot::Color;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = concat!(include_str!("colours.css"), include_str!("style.css"));
@@ -30,10 +31,14 @@ pub(crate) fn html(document: &Document) -> String {
                 header {
                     h1 { (document.title) }
                     p.subtitle { (document.subtitle) }
+                    @if !document.about.is_empty() { p.about { (document.about) } }
                 }
                 main {
                     @if !document.lead.is_empty() {
                         div.lead { @for sentence in &document.lead { p { (sentence) } } }
+                    }
+                    @if !document.band.is_empty() {
+                        div.band { @for card in &document.band { (of_card(card)) } }
                     }
                     @for warning in &document.warnings { p.warning role="alert" { (warning) } }
                     nav aria-label="Contents" {
@@ -49,6 +54,24 @@ pub(crate) fn html(document: &Document) -> String {
         }
     };
     renumbered(&page.into_string())
+}
+
+fn of_card(card: &Card) -> Markup {
+    let color = card.color.map_or("var(--line)".to_string(), Color::css);
+    html! {
+        div.card style={ "border-top-color:" (color) } {
+            @match card.holds {
+                Some(true) => span.badge.holds { "✓ holds" },
+                Some(false) => span.badge.fails { "✗ not proved" },
+                None => {}
+            }
+            strong { (card.name) }
+            @if !card.note.is_empty() { span.note { (card.note) } }
+            @for (number, label) in &card.numbers {
+                div { b { (number) } " " span { (label) } }
+            }
+        }
+    }
 }
 
 fn of_section(index: usize, section: &Section) -> Markup {
@@ -74,7 +97,7 @@ fn of_block(block: &Block) -> Markup {
 
 fn of_figure(figure: &Figure) -> Markup {
     html! {
-        figure {
+        figure class=[(figure.panels.len() > 1).then_some("wide")] {
             @if !figure.legend.is_empty() {
                 div.legend {
                     @for key in &figure.legend {
@@ -82,7 +105,7 @@ fn of_figure(figure: &Figure) -> Markup {
                     }
                 }
             }
-            div.panels { @for panel in &figure.panels { (PreEscaped(panel.svg())) } }
+            div.panels.four[figure.panels.iter().all(|panel| panel.width.is_some())] { @for panel in &figure.panels { (PreEscaped(panel.svg())) } }
             figcaption { (figure.caption) }
         }
     }

@@ -93,6 +93,8 @@ pub(crate) struct Plot {
     pub(crate) moments: Vec<(f64, Color)>,
     /// Whether a unit is as long along x as along y.
     pub(crate) equal: bool,
+    /// Width, px; that of [`SIZE`] if not given.
+    pub(crate) width: Option<f64>,
     /// Height, px; that of [`SIZE`] if not given.
     pub(crate) height: Option<f64>,
 }
@@ -168,7 +170,8 @@ impl Plot {
 
     /// Whole pixels, as the drawing writes them.
     fn size(&self) -> (f64, f64) {
-        (SIZE.0, self.height.unwrap_or(SIZE.1).round())
+        let whole = |given: Option<f64>, usual: f64| given.unwrap_or(usual).round();
+        (whole(self.width, SIZE.0), whole(self.height, SIZE.1))
     }
 
     /// The drawing without a size of its own, and with a name for those who cannot see it.

@@ -128,7 +128,13 @@ pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, P
         ),
         view(13, "sensor fault", SENSOR_FAULT, rate, Scenario::Ftc),
         view(14, "control input", CONTROL, effort, Scenario::Ftc),
-        view(19, "states under the PID", STATES, length, Scenario::Pid),
+        view(
+            19,
+            "states under the PID",
+            STATES,
+            length,
+            uavs.flying_pid(),
+        ),
     ];
     let of_robots = [
         view(15, "states", STATES, length, Scenario::Ftc),
@@ -141,7 +147,13 @@ pub(super) fn all(uavs: &Scenarios, robots: &Scenarios) -> Result<Vec<Figure>, P
         ),
         view(17, "sensor fault", SENSOR_FAULT, rate, Scenario::Ftc),
         view(18, "control input", CONTROL, effort, Scenario::Ftc),
-        view(20, "states under the PID", STATES, length, Scenario::Pid),
+        view(
+            20,
+            "states under the PID",
+            STATES,
+            length,
+            robots.flying_pid(),
+        ),
     ];
     let mut figures: Vec<(u32, Figure)> = Vec::new();
     for view in &of_uavs {
@@ -186,10 +198,18 @@ fn of_view(scenarios: &Scenarios, view: &View, agent: &str) -> Figure {
         .collect();
     let title = format!("Figure {}: {agent}, {}", view.number, view.what);
     let controller = match view.simulated {
-        Scenario::Pid => "PID",
-        Scenario::Ftc | Scenario::OnCourse => "FTC",
+        Scenario::Pid | Scenario::Placed => scenarios.reading(view.simulated),
+        Scenario::Ftc | Scenario::OnCourse => "FTC".to_string(),
     };
     let mut caption = format!("First {agent} of the team under the {controller}.");
+    if view.simulated == Scenario::Placed
+        && let Some(lost_s) = scenarios.lost_s(Scenario::Pid)
+    {
+        let plain = scenarios.reading(Scenario::Pid);
+        caption.push_str(&format!(
+            " Under the {plain} it diverges within {lost_s:.2} s."
+        ));
+    }
     if let Some(lost_s) = scenarios.lost_s(view.simulated) {
         caption.push_str(&format!(" The episode diverges within {lost_s:.2} s."));
     }

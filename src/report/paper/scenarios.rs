@@ -4,7 +4,8 @@ use super::error::PaperError;
 use super::measures::Series;
 use crate::backend::cpu::{Cpu, Precision};
 use crate::campaign::{
-    AgentGroup, Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, Parameter,
+    AgentGroup, Campaign, Distribution, DisturbanceKind, FTC, FaultKind, PID, PID_PLACED,
+    Parameter, PlacedPoles,
 };
 use crate::controllers::GainSet;
 use crate::draw::draw;
@@ -22,9 +23,14 @@ pub(super) enum Scenario {
     Ftc,
     /// Under the FTC, but without initial errors.
     OnCourse,
-    /// Under the PID.
+    /// Under the PID as the paper's text reads: hardly any integral action.
     Pid,
+    /// Under a PID whose error has a triple pole.
+    Placed,
 }
+
+/// The readings of the paper's PID, the plain one first.
+pub(super) const READINGS: [Scenario; 2] = [Scenario::Pid, Scenario::Placed];
 
 impl Scenario {
     /// What the episode is called in a sentence.
@@ -32,7 +38,8 @@ impl Scenario {
         match self {
             Self::Ftc => "the episode under the FTC",
             Self::OnCourse => "the episode under the FTC without initial errors",
-            Self::Pid => "the episode under the PID",
+            Self::Pid => "the episode under the PID as the text reads",
+            Self::Placed => "the episode under the PID with a triple pole",
         }
     }
 }
@@ -45,6 +52,7 @@ pub struct Scenarios {
     ftc: Vec<Snapshot>,
     on_course: Vec<Snapshot>,
     pid: Vec<Snapshot>,
+    placed: Vec<Snapshot>,
 }
 
 impl Scenarios {
@@ -54,9 +62,9 @@ impl Scenarios {
     /// If it has no gains, or if the claims cannot be asked of it: its first agent must meet one sine
     /// and one smoothed square wave, the same on all channels.
     pub fn simulate(campaign: &Campaign) -> Result<Self, PaperError> {
-        let pair = [FTC, PID].map(Into::into).to_vec();
+        let compared = [FTC, PID, PID_PLACED].map(Into::into).to_vec();
         let group = campaign.first_group().clone();
-        let group = group.with(|group| group.controllers = pair);
+        let group = group.with(|group| group.controllers = compared);
         let path = &group.path;
         let met = Met::of(&group).ok_or_else(|| PaperError::Unsuited { path: path.clone() })?;
         let gains = GainSet::synthesize_or_load(&group)?;
@@ -65,9 +73,9 @@ impl Scenarios {
             cpu.trace(0, controller, EVERY).1
         };
         let on_course = without_initial_errors(&group);
-        let (ftc, (on_course, pid)) = rayon::join(
-            || trace(&group, 0),
-            || rayon::join(|| trace(&on_course, 0), || trace(&group, 1)),
+        let ((ftc, on_course), (pid, placed)) = rayon::join(
+            || rayon::join(|| trace(&group, 0), || trace(&on_course, 0)),
+            || rayon::join(|| trace(&group, 1), || trace(&group, 2)),
         );
         Ok(Self {
             group,
@@ -75,6 +83,7 @@ impl Scenarios {
             ftc,
             on_course,
             pid,
+            placed,
         })
     }
 
@@ -83,6 +92,7 @@ impl Scenarios {
             Scenario::Ftc => &self.ftc,
             Scenario::OnCourse => &self.on_course,
             Scenario::Pid => &self.pid,
+            Scenario::Placed => &self.placed,
         }
     }
 
@@ -117,6 +127,26 @@ impl Scenarios {
 
     fn time_s(&self, snapshot: &Snapshot) -> f64 {
         f64::from(snapshot.step) * self.group.time.step_s
+    }
+
+    /// The reading of the paper's PID that flies: the plain one if it stays finite.
+    pub(super) fn flying_pid(&self) -> Scenario {
+        let mut readings = READINGS.into_iter();
+        let flies = |reading: &Scenario| self.lost_s(*reading).is_none();
+        readings.find(flies).unwrap_or(Scenario::Pid)
+    }
+
+    /// A reading of the paper's PID, in a few words.
+    pub(super) fn reading(&self, simulated: Scenario) -> String {
+        match (simulated, &self.group.synthesis.placed.poles) {
+            (Scenario::Placed, PlacedPoles::At(rad_s)) => {
+                format!("PID with a triple pole at -{rad_s} 1/s")
+            }
+            (Scenario::Placed, PlacedPoles::DelayMarginOf(_)) => {
+                "PID with a triple pole".to_string()
+            }
+            _ => "PID as the text reads".to_string(),
+        }
     }
 
     /// How long an episode is, s.

@@ -23,7 +23,7 @@ pub(crate) fn pairs(data: &RunData) -> Section {
         log_ratio,
         interval,
     } = Columns::of(data);
-    let mut failures = Grid::new([
+    let head = Grid::new([
         "pair",
         "only the first fails",
         "only the second",
@@ -32,54 +32,54 @@ pub(crate) fn pairs(data: &RunData) -> Section {
         "McNemar mid-p",
         "after Holm",
     ]);
-    let mut errors = Grid::new([
+    let [mut failures, mut other_failures] = [head.clone(), head];
+    let head = Grid::new([
         "pair",
         "channel or group",
         "the first's RMS error is smaller by a factor of",
         "it wins",
     ]);
-    let mut folded = errors.clone();
+    let [mut errors, mut other_errors, mut channels] = [head.clone(), head.clone(), head];
+    let first = data.campaign.controllers.first();
     let mut last = String::new();
     for row in sheet.find(&[("stratum", ALL)]) {
         let pair = format!("{} against {}", sheet.text(row, "a"), sheet.text(row, "b"));
-        let of = |name: &str| sheet.real(row, name);
+        let of_first = first.is_some_and(|first| *first == sheet.text(row, "a"));
         if pair != last {
-            failures
-                .rows
-                .push(failures_of(sheet, row, &pair, difference));
+            let grid = if of_first {
+                &mut failures
+            } else {
+                &mut other_failures
+            };
+            grid.rows.push(failures_of(sheet, row, &pair, difference));
             last.clone_from(&pair);
         }
-        let factor = |side: &str| of(&format!("{log_ratio}{side}")).exp();
-        let cells = vec![
-            Cell::text(&*pair),
-            Cell::text(sheet.text(row, "name")),
-            Cell::number(format::measured(
-                factor(""),
-                factor("_lower"),
-                factor("_upper"),
-            )),
-            Cell::number(format::rate(of("win_rate"), None)),
-        ];
-        if sheet.text(row, "scope") == "group" {
-            errors.rows.push(cells);
-        } else {
-            folded.rows.push(cells);
-        }
+        let grid = match (sheet.text(row, "scope"), of_first) {
+            ("group", true) => &mut errors,
+            ("group", false) => &mut other_errors,
+            _ => &mut channels,
+        };
+        grid.rows.push(errors_of(sheet, row, &pair, log_ratio));
     }
     let explained = format!(
         "The same episodes under both controllers. Factor: median over the episodes of the ratio of RMS errors over the \
          team, {interval}; above 1 the first is closer. A diverged episode counts as \
          infinitely bad, a pair of two as a tie."
     );
-    Section::new(
-        "Pair by pair",
-        vec![
-            Block::Grid(failures),
-            Block::Text(explained),
-            Block::Grid(errors),
-            Block::Folded("Every channel".into(), vec![Block::Grid(folded)]),
-        ],
-    )
+    let mut blocks = vec![
+        Block::Grid(failures),
+        Block::Text(explained),
+        Block::Grid(errors),
+    ];
+    if !other_errors.rows.is_empty() {
+        let others = [other_failures, other_errors].map(Block::Grid);
+        blocks.push(Block::Folded("Every other pair".into(), others.to_vec()));
+    }
+    blocks.push(Block::Folded(
+        "Every channel".into(),
+        vec![Block::Grid(channels)],
+    ));
+    Section::new("Pair by pair", blocks)
 }
 
 /// Which columns of the comparison hold what the sampling design allows.
@@ -119,6 +119,21 @@ impl Columns {
             interval,
         }
     }
+}
+
+/// How the errors of the controllers of a pair compare on some channels.
+fn errors_of(sheet: &TableReader, row: usize, pair: &str, log_ratio: &str) -> Vec<Cell> {
+    let factor = |side: &str| sheet.real(row, &format!("{log_ratio}{side}")).exp();
+    vec![
+        Cell::text(pair),
+        Cell::text(sheet.text(row, "name")),
+        Cell::number(format::measured(
+            factor(""),
+            factor("_lower"),
+            factor("_upper"),
+        )),
+        Cell::number(format::rate(sheet.real(row, "win_rate"), None)),
+    ]
 }
 
 /// How often the controllers of a pair fail.
@@ -245,9 +260,11 @@ fn quantiles(data: &RunData) -> Grid {
         "99th percentile [95 %]",
     ]);
     for row in sheet.find(&[("stratum", ALL)]) {
+        // What commands cost, and how fast errors settle, is among the terms of the comparison.
         let name = match sheet.text(row, "metric") {
             "rmse" => "RMS",
-            _ => "largest",
+            "max_abs" => "largest",
+            _ => continue,
         };
         let group = sheet.text(row, "group");
         let roles = data.campaign.channel_groups();

@@ -4,6 +4,7 @@ use crate::campaign::{ALL, Campaign};
 use crate::report::notes::caveats;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
+use crate::report::requirements::bound;
 use crate::report::run_data::{RunData, whole};
 use crate::results::RateMethod;
 use crate::util::format::{self, sentence};
@@ -142,9 +143,11 @@ fn requirements(data: &RunData) -> Grid {
     let mut grid = Grid::new([
         "requirement",
         "stratum",
-        "asked: 95 % sure below",
+        "measure",
+        "asked",
+        "95 % sure",
         "found",
-        "failed",
+        "episodes",
     ]);
     for result in &data.manifest.requirements {
         let met = result.is_met();
@@ -158,9 +161,11 @@ fn requirements(data: &RunData) -> Grid {
                 ),
             ),
             Cell::text(result.stratum.clone()),
-            Cell::number(format::rate(result.limit, None)),
-            Cell::number(format::at_most(result.upper_95)),
-            Cell::number(format!("{} of {}", result.failed, result.n)),
+            Cell::text(&*result.quantity),
+            Cell::number(format!("{} {}", result.side.words(), result.limit)),
+            Cell::number(bound(result)),
+            Cell::number(result.value.map_or("-".to_string(), format::number)),
+            Cell::number(format!("{} ({} failed)", result.n, result.failed)),
         ]);
     }
     grid
@@ -189,6 +194,13 @@ fn survival(data: &RunData) -> Figure {
             *first = first.min(end_s);
         }
     }
+    let most = failed_at.iter().map(|times| {
+        let failed = times.iter().filter(|time_s| time_s.is_finite()).count();
+        failed as f64 / episodes.max(1) as f64
+    });
+    let most = most.fold(0.0, f64::max);
+    // A little room below, so that the labels of both axes do not meet in the corner; cut to what there is to see.
+    let range = Some((1.0 - 1.1 * most.max(0.01), 1.0 + 0.03 * most.max(0.01)));
     let marks = failed_at.iter().enumerate().map(|(index, times)| {
         let mut times: Vec<f64> = times.iter().copied().filter(|t| t.is_finite()).collect();
         times.sort_by(f64::total_cmp);
@@ -212,8 +224,7 @@ fn survival(data: &RunData) -> Figure {
                 ..Axis::new("time, s")
             },
             y: Axis {
-                // A little room below, so that the labels of both axes do not meet in the corner.
-                range: Some((-0.03, 1.03)),
+                range,
                 ..Axis::new("share not failed yet")
             },
             marks: marks.collect(),

@@ -18,14 +18,12 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
         .iter()
         .map(ToString::to_string)
         .collect();
-    let mut forest = Grid {
-        head: vec![
-            "stratum".into(),
-            format!("failure rate: {}", names.join(", ")),
-            "episodes".into(),
-        ],
-        rows: Vec::new(),
-    };
+    let head = vec![
+        "stratum".into(),
+        format!("failure rate: {}", names.join(", ")),
+        "episodes".into(),
+    ];
+    let mut all: Vec<(Harm, Vec<Cell>)> = Vec::new();
     for stratum in strata {
         let mut n = f64::NAN;
         let mut rates = Vec::new();
@@ -36,21 +34,43 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
                 rates.push(rate(data, row, Color::Series(index)));
             }
         }
-        forest.rows.push(vec![
+        let failures = rates.iter().map(|own| own.value).fold(0.0, f64::max);
+        let cells = vec![
             Cell::text(&*stratum.name),
             Cell::Spreads(rates),
             Cell::number(format!("{n:.0}")),
-        ]);
+        ];
+        all.push((harm(data, &stratum.name, failures), cells));
     }
+    all.sort_by(|(a, _), (b, _)| b.order(a));
+    let (harmful, harmless): (Vec<_>, Vec<_>) = all.into_iter().partition(|(own, _)| own.is_any());
+    let grid = |rows: Vec<(Harm, Vec<Cell>)>| {
+        Block::Grid(Grid {
+            head: head.clone(),
+            rows: rows.into_iter().map(|(_, cells)| cells).collect(),
+        })
+    };
     let sentences = data.manifest.harm.iter();
     let mut blocks: Vec<Block> = sentences
         .map(|own| Block::Text(format!("{own}.")))
         .collect();
     blocks.push(Block::text(
-        "Points are failure rates, bars their 95 % intervals, from 0 to 100 %; the controllers in this order, top to bottom, in \
-         the colours of the figures.",
+        "The most harmful first. Points are failure rates, bars their 95 % intervals, from 0 to 100 %; the controllers in this \
+         order, top to bottom, in the colours of the figures.",
     ));
-    blocks.push(Block::Grid(forest));
+    if !harmful.is_empty() {
+        blocks.push(grid(harmful));
+    }
+    if !harmless.is_empty() {
+        let title = format!(
+            "{} without a failure or a sure growth of the errors that counts",
+            match harmless.len() {
+                1 => "One stratum".to_string(),
+                many => format!("{many} strata"),
+            }
+        );
+        blocks.push(Block::Folded(title, vec![grid(harmless)]));
+    }
     if data.screening.rows() > 0 {
         blocks.push(Block::Folded(
             "Growth of the errors".into(),
@@ -58,6 +78,44 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
         ));
     }
     Some(Section::new("By stratum", blocks))
+}
+
+/// What a stratum does to the controller that it harms most.
+#[derive(Debug, Clone, Copy)]
+struct Harm {
+    /// Its failure rate.
+    failures: f64,
+    /// The logarithm by which the errors surely grow; 0 if none does by as much as counts.
+    growth: f64,
+}
+
+impl Harm {
+    fn is_any(&self) -> bool {
+        self.failures > 0.0 || self.growth > 0.0
+    }
+
+    fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let by_failures = self.failures.total_cmp(&other.failures);
+        by_failures.then(self.growth.total_cmp(&other.growth))
+    }
+}
+
+fn harm(data: &RunData, stratum: &str, failures: f64) -> Harm {
+    let table = &data.screening;
+    let mut growth: f64 = 0.0;
+    for row in table.find(&[("stratum", stratum)]) {
+        for of in data.campaign.channel_groups() {
+            let smallest = data.campaign.groups()[of.group].verdict.smallest_ratio.ln();
+            let surely = table.real(
+                row,
+                &format!("log_growth_{}_lower", of.name.replace(' ', "_")),
+            );
+            if surely > smallest {
+                growth = growth.max(surely);
+            }
+        }
+    }
+    Harm { failures, growth }
 }
 
 fn growth(data: &RunData) -> Grid {

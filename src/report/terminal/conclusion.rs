@@ -1,11 +1,13 @@
 //! What a run comes to: its verdict and its requirements.
 
+use super::detail::Detail;
 use crate::campaign::Campaign;
 use crate::report::page::document::{Block, Cell, Grid, Section};
+use crate::report::requirements::found;
 use crate::results::{RequirementResult, how_sure};
 use crate::run::Findings;
 use crate::synthesis::Margins;
-use crate::util::format::{digits, rounded_up};
+use crate::util::format::digits;
 
 /// Who does better, in a sentence each.
 pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> Section {
@@ -18,7 +20,7 @@ pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> Section {
 }
 
 /// On what terms the controllers are compared.
-pub(super) fn terms(findings: &Findings) -> Section {
+pub(super) fn terms(findings: &Findings, detail: Detail) -> Section {
     let mut grid = Grid::new([
         "controller",
         "channels",
@@ -29,6 +31,7 @@ pub(super) fn terms(findings: &Findings) -> Section {
         "largest command, 95 %",
         "effort, median",
         "at a limit",
+        "settled, s",
     ]);
     for own in &findings.results.terms {
         let number = |value: Option<f64>, precision| {
@@ -47,9 +50,11 @@ pub(super) fn terms(findings: &Findings) -> Section {
             number(own.peak_command_p95, 3),
             number(own.effort_p50, 3),
             Cell::Number(share),
+            number(own.settling_p50_s, 3),
         ]);
     }
     let unlike = findings.results.unlike.iter().map(Block::text);
+    let unlike = unlike.filter(|_| detail == Detail::Everything);
     let blocks = unlike.chain([Block::Grid(grid)]).collect();
     Section::explained(
         "on what terms",
@@ -61,21 +66,18 @@ pub(super) fn terms(findings: &Findings) -> Section {
 /// What became of each `[[require]]`, one a line.
 pub(super) fn requirements(results: &[RequirementResult]) -> Section {
     let mut grid = Grid::default();
-    for (index, result) in results.iter().enumerate() {
+    for result in results {
         let met = result.is_met();
         grid.rows.push(vec![
             Cell::Verdict(met, if met { "met" } else { "UNMET" }.into()),
-            Cell::text(format!("require[{index}]")),
+            Cell::text(format!("require[{}]", result.place)),
             Cell::text(result.subject()),
-            Cell::text(format!(
-                "below {}, required {:.4} ({} of {} failed)",
-                rounded_up(result.upper_95, 4),
-                result.limit,
-                result.failed,
-                result.n
-            )),
+            Cell::text(found(result)),
         ]);
     }
-    let note = ": the failure rate with 95 % confidence";
+    let note = match results.iter().all(RequirementResult::is_failure_rate) {
+        true => ": the failure rate with 95 % confidence",
+        false => ": what is proved with 95 % confidence",
+    };
     Section::explained("requirements", note, vec![Block::Grid(grid)])
 }

@@ -2,6 +2,7 @@
 
 use super::attenuation;
 use super::conclusion::{in_short, requirements, terms};
+use super::detail::Detail;
 use super::pairs::pairs;
 use super::screening::strata;
 use crate::campaign::{ALL, Campaign};
@@ -23,16 +24,18 @@ use std::path::Path;
 /// Conditions that are shown of each target.
 const STRONGEST: usize = 3;
 
-/// The findings of a run at a glance.
-pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String {
+/// The findings of a run; what they come to stands at the end, where a terminal shows it.
+pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path, detail: Detail) -> String {
     let manifest = &findings.manifest;
     let [by_stratum, harm] = strata(campaign, findings);
-    text(&Document {
-        title: campaign.name.clone(),
-        subtitle: simulated(campaign, manifest),
-        lead: beside(campaign, manifest),
-        warnings: Vec::new(),
-        sections: vec![
+    let sections = match detail {
+        Detail::Screen => vec![
+            failure_rates(campaign, findings),
+            rms_errors(campaign, findings),
+            terms(findings, detail),
+            harm,
+        ],
+        Detail::Everything => vec![
             failure_rates(campaign, findings),
             by_stratum,
             harm,
@@ -40,11 +43,20 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path) -> String 
             pairs(campaign, findings),
             what_matters(campaign, findings),
             worst(findings, out),
-            in_short(campaign, findings),
-            terms(findings),
-            requirements(&manifest.requirements),
-            written(manifest.times, out),
+            terms(findings, detail),
         ],
+    };
+    let conclusion = [
+        written(manifest.times, out, detail),
+        requirements(&manifest.requirements),
+        in_short(campaign, findings),
+    ];
+    text(&Document {
+        title: campaign.name.clone(),
+        subtitle: simulated(campaign, manifest),
+        lead: beside(campaign, manifest),
+        sections: sections.into_iter().chain(conclusion).collect(),
+        ..Document::default()
     })
 }
 
@@ -166,16 +178,21 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> Section {
 }
 
 /// Where the files are, and how long it all took.
-fn written(times: Times, out: &Path) -> Section {
-    let text = format!(
-        "written to {} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
-        out.display(),
-        times.synthesis_s,
-        times.loop_s,
-        times.cross_check_s,
-        times.statistics_s,
-        times.writing_s
-    );
+fn written(times: Times, out: &Path, detail: Detail) -> Section {
+    let out = out.display();
+    let text = match detail {
+        Detail::Screen => {
+            format!("written to {out}: report.html has the whole, --verbose prints more of it")
+        }
+        Detail::Everything => format!(
+            "written to {out} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
+            times.synthesis_s,
+            times.loop_s,
+            times.cross_check_s,
+            times.statistics_s,
+            times.writing_s
+        ),
+    };
     Section::new("", vec![Block::Text(text)])
 }
 

@@ -24,5 +24,6 @@ pub fn tuning(tuning: &Tuning, out: &Path) -> String {
                 vec![Block::text(files)],
             ),
         ],
+        ..Document::default()
     })
 }

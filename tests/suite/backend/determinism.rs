@@ -172,6 +172,8 @@ fn same_bytes(campaign: &Campaign) {
             "episodes.parquet",
             "fairness.csv",
             "fairness.parquet",
+            "flights.csv",
+            "flights.parquet",
             "gains.json",
             "ranking.csv",
             "ranking.parquet",

@@ -122,7 +122,7 @@ fn a_run_of_robots_is_replayed_without_the_robots_file() {
     let table = fs::read_to_string(repository("campaigns/robots/g1_12dof.toml")).unwrap();
     place.write("own.toml", &table);
     // It has not gone far in 2 s, which is said before the simulation.
-    let ended = place.program(&["run", "c.toml", "--out", "out", "--csv"]);
+    let ended = place.program(&["run", "c.toml", "--out", "out", "--csv", "--verbose"]);
     let note = "the episode 2 s; its end is not reached\n";
     assert!(ended.stderr.ends_with(note), "{}", ended.stderr);
     assert_eq!((ended.code, ended.stderr.lines().count()), (0, 1));

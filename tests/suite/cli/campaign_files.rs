@@ -94,7 +94,7 @@ controllers = ["ftc", "pid", "pid-tuned"] => controllers = "ftc" :: "ftc" ~ expe
 [coupling]        => [[coupling]]        :: line 42 ~ a list, expected a table of keys and values
 normal = { mean = 0.0, std = 0.1 } => normal = [0.0, 0.1] :: normal = [0.0, 0.1] ~ a list, expected a table
 error_integral = 0.0 => agents = [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]] :: agents ~ a list, expected a table
-name = "smoke"    => name = "smoke       :: line 2, column 14 ~ | ~ ^
+name = "smoke"    => name = "smoke       :: line 1, column 14 ~ | ~ ^
 seed = 2026       => seed = 2026\nseed = 3 :: line 4, column 1 ~ seed = 3 ~ duplicate key; keep one
 seed = 2026       =>                     :: missing key or table `seed`; add it
 step_s = 0.002    =>                     :: [time] ~ missing key or table `step_s`; add it
@@ -127,7 +127,7 @@ max_error = 1.5   => max_error = 0.0     :: verdict.max_error (line 69) = 0.0: m
 channels = "one"  => channels = [0, 7]   :: fault[0].channels (line 55) = [0, 7] ~ different channel numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw
 channels = "one"  => channels = [2, 2]   :: fault[0].channels (line 55) = [2, 2] ~ different channel numbers
 channels = "one"  => channels = "two"    :: fault[0].channels (line 55) = "two" ~ "all", "one"
-name = "smoke"    => name = "../smoke"   :: name (line 2) = "../smoke": a name consists of letters, digits, '-' and '_'; rename it
+name = "smoke"    => name = "../smoke"   :: name (line 1) = "../smoke": a name consists of letters, digits, '-' and '_'; rename it
 "uav-paper"       => "uav-paper"\nposition.rho = -0.1 :: synthesis.position.rho (line 36) = -0.1: must be above 0
 "uav-paper"       => "uav-paper"\nposition.q1 = [-1, 1, 1] :: synthesis.position.q1[0] (line 36) = -1: must be above 0
 "uav-paper"       => "uav-paper"\nattitude.smoothing_leak_per_s = 0.0 :: synthesis.attitude.smoothing_leak_per_s (line 36) = 0.0 ~ must decay ~ give a leak above 0

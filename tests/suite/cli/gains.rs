@@ -285,6 +285,6 @@ fn delays_beyond_a_margin_and_levels_that_are_not_reached_are_said_before_and_af
     // A level below what can be had is not reached, and is said not to be.
     let low = ["--set", "synthesis.position.rho=9.0"];
     let checked = place.json(&[&["check", "c.toml", "--json"], &low as &[_]].concat());
-    let said = "ftc on position: the weights ask for an attenuation of rho = 9, the gains certify 10.135 only";
+    let said = "ftc on position: the weights ask for an attenuation of rho = 9.000, the gains certify 10.135 only";
     assert_eq!(checked["notes"], serde_json::json!([said]));
 }

@@ -74,6 +74,7 @@ fn a_campaign_of_uavs_and_robots_runs_and_reports_on_both() {
         assert_eq!(row[column("inertia_scale")].is_empty(), robot);
         assert!(!row[column("mass_scale")].is_empty());
     }
+    place.succeeds(&["report", "out", "--full"]);
     let report = place.read("out/report.md");
     for said in [
         "12 episodes of 3 UAVs (uavs) and 4 robots (robots) over 0.8 s",

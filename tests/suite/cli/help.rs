@@ -83,7 +83,13 @@ fn every_example_of_the_help_works_where_the_campaigns_are() {
         assert!((1..=4).contains(&examples.len()), "{help}");
         for example in examples {
             let line = example.split(" > ").next().unwrap();
-            let mut words = line.split_whitespace();
+            // Every second part is in single quotes: one word, whatever is in it.
+            let parts = line.split('\'').enumerate();
+            let words = parts.flat_map(|(place, part)| match place % 2 {
+                0 => part.split_whitespace().collect::<Vec<_>>(),
+                _ => vec![part],
+            });
+            let mut words = words.into_iter();
             assert_eq!(words.next(), Some("urts-mc"), "{example}");
             let ended = place.program(&words.collect::<Vec<_>>());
             assert_eq!((ended.code, &*ended.stderr), (0, ""), "{example}");

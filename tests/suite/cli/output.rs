@@ -9,13 +9,15 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 16] = [
+const FILES: [&str; 18] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
     "episodes.parquet",
     "fairness.csv",
     "fairness.parquet",
+    "flights.csv",
+    "flights.parquet",
     "gains.json",
     "manifest.json",
     "ranking.csv",

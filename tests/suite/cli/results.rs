@@ -114,6 +114,7 @@ fn a_screening_says_which_fault_hurts_which_controller_most() {
         "--episodes",
         "64",
         "--overwrite",
+        "--verbose",
         "--out",
         "out",
     ];
@@ -161,7 +162,7 @@ fn a_design_and_an_early_stop_are_told_in_a_sentence() {
         ("[verdict]", "[sampling]\ndesign = \"sobol\"\n[verdict]"),
         ("episodes = 3", "episodes = 16"),
     ]);
-    let text = place.succeeds(&["run", "c.toml", "--out", "out"]);
+    let text = place.succeeds(&["run", "c.toml", "--out", "out", "--verbose"]);
     for word in [
         "design: 8 scrambled Sobol nets of 2 episodes, which are not independent",
         "the intervals here are Student's t over the 8 replicates",

@@ -56,6 +56,7 @@ fn a_run_with_settings_is_that_of_the_edited_file_and_remembers_them() {
     assert!(set["campaign_blake3"] != manifest("edited")["campaign_blake3"]);
 
     // The settings are shown as they were typed.
+    place.succeeds(&["report", "set", "--full"]);
     let report = place.read("set/report.md");
     for setting in [SET[1], SET[3], SET[5]] {
         assert!(report.contains(&format!("--set {setting}")), "{setting}");

@@ -100,30 +100,50 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
         ("episodes = 3", "episodes = 16"),
         ("\"pid-tuned\"]", "\"pid-robust-observer\"]"),
     ]);
-    let said = place.program(&["run", "c.toml", "--out", "out"]).stdout;
+    let said = place
+        .program(&["run", "c.toml", "--out", "out", "--verbose"])
+        .stdout;
     let sure = how_sure(&Campaign::load(&place.path("c.toml")).unwrap());
     assert!(sure.contains("exact tests agree"));
-    let end = said.split(&format!("\nin short ({sure})\n")).nth(1);
-    let lines: Vec<&str> = end.unwrap().lines().collect();
+    let parts: Vec<&str> = said.split(&format!("\nin short ({sure})\n")).collect();
+    let [before, end] = parts.as_slice() else {
+        panic!("{said}")
+    };
+    // The verdict is the last thing that is said.
+    let lines: Vec<&str> = end.lines().collect();
+    assert_eq!(lines.len(), 2, "{lines:?}");
     assert!(lines[0].starts_with(
         "  ftc does better than pid: it fails in 0.0 % of the episodes, the other in "
     ));
     assert!(lines[1].starts_with("  ftc does better than pid-robust-observer: neither fails; "));
-    assert!(lines[3].starts_with("on what terms: "), "{}", lines[3]);
-    let head = "requirements: the failure rate with 95 % confidence";
-    let at = lines.iter().position(|line| *line == head);
-    let lines = &lines[at.unwrap() - 3..];
+    let lines: Vec<&str> = before.lines().collect();
+    let at = |wanted: &str| {
+        lines
+            .iter()
+            .position(|line| line.starts_with(wanted))
+            .unwrap()
+    };
+    assert!(at("on what terms: ") < at("written to out"));
+    let at = at("requirements: the failure rate with 95 % confidence");
     // 1 - 0.05^(1/16) = 0.17074, and a bound is never rounded down.
     assert_eq!(
-        lines[4],
+        lines[at + 1],
         "  met    require[0]  ftc  below 0.1708, required 0.6400 (0 of 16 failed)"
     );
     assert!(
-        lines[5].starts_with("  UNMET  require[1]  pid  below "),
+        lines[at + 2].starts_with("  UNMET  require[1]  pid  below "),
         "{}",
-        lines[5]
+        lines[at + 2]
     );
-    assert!(lines[7].starts_with("written to out"));
+    // What fits a screen ends the same, and says where the rest is.
+    let short = place.program(&["run", "c.toml", "--out", "out"]).stdout;
+    assert!(
+        short.ends_with(end) && short.lines().count() <= 40,
+        "{short}"
+    );
+    assert!(
+        short.contains("written to out: report.html has the whole, --verbose prints more of it")
+    );
     // The manifest keeps them, so that a report can be made of the directory alone.
     let manifest: serde_json::Value =
         serde_json::from_str(&place.read("out/manifest.json")).unwrap();
@@ -141,7 +161,7 @@ fn a_run_ends_with_a_plain_sentence_and_every_requirement() {
             &manifest["requirements"][result],
         );
         assert_eq!(own["met"], met);
-        for key in ["controller", "stratum", "limit", "upper_95", "n", "failed"] {
+        for key in ["controller", "stratum", "limit", "bound_95", "n", "failed"] {
             assert_eq!(own[key], kept[key], "{key}");
         }
     }
@@ -277,7 +297,7 @@ fn a_mistyped_adapter_is_answered_with_the_nearest_word_of_a_name() {
 #[test]
 fn a_replay_that_is_printed_can_be_pasted_into_a_shell() {
     let place = Place::smoke(&[]);
-    let said = place.succeeds(&["run", "c.toml", "--out", "it's my run"]);
+    let said = place.succeeds(&["run", "c.toml", "--verbose", "--out", "it's my run"]);
     let (_, printed) = said.split_once(": urts-mc replay ").unwrap();
     let arguments = printed.lines().next().unwrap();
     assert!(arguments.starts_with(r"'it'\''s my run' --episode "));

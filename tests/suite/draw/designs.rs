@@ -184,7 +184,7 @@ fn scores(campaign: &Campaign) -> Scores {
             rmse: vec![vec![0.01; 64 * values]; controllers],
             max_abs: vec![vec![0.01; 64 * values]; controllers],
             failed_step: vec![vec![None; 64 * campaign.first_group().team]; controllers],
-            commands: vec![Vec::new(); controllers],
+            channel_groups: vec![Vec::new(); controllers],
         }],
         fault_occurs: vec![vec![true; 64]; campaign.first_group().faults.len()],
         conditions: vec![(
@@ -250,7 +250,7 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         assert!(of_all().all(|rate| rate.interval.is_some() == (rate.controller == "ftc")));
 
         // Student's t decides, at 5 % over the three things that are looked at: 0.005 is enough.
-        let said = verdict(&campaign, &summary, &comparisons);
+        let said = verdict(&campaign, &summary, &comparisons, &[]);
         // What speaks against the first controller comes first.
         assert!(
             said[0].starts_with("ftc does worse than pid-tuned: "),
@@ -268,7 +268,13 @@ fn what_a_design_does_not_allow_is_null_and_students_t_over_replicates_takes_its
         );
         // What no interval tells is not called unclear.
         let few = sampled(design, 4, 64);
-        let said = verdict(&few, &summarise(&few, &scores), &compare(&few, &scores)).join("");
+        let said = verdict(
+            &few,
+            &summarise(&few, &scores),
+            &compare(&few, &scores),
+            &[],
+        )
+        .join("");
         assert!(said.contains(" points, no interval)"), "{said}");
         assert!(
             said.starts_with("nothing here says how sure a difference between ftc and pid is: "),

@@ -4,6 +4,7 @@ use super::scores_of_channels;
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
 use urts_mc::random::philox::{Address, Stream};
+use urts_mc::results::flights::Chatter;
 use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::sensitivity::worst;
 use urts_mc::results::{
@@ -117,18 +118,18 @@ fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
     assert_eq!(failed("ftc", "actuator loss-of-effectiveness"), (2, 10));
     assert_eq!(failed("pid", "sensor smoothed-square"), (5, 10));
     assert_eq!(failed("pid", "none"), (0, 10));
-    // Two controllers, four parts, two groups, two metrics: nothing else is a part.
-    assert_eq!(summary_table(&summary).to_frame().unwrap().height(), 32);
+    // Two controllers, four parts, two groups, seven numbers of an episode: nothing else is a part.
+    assert_eq!(summary_table(&summary).to_frame().unwrap().height(), 112);
     // Of 10 without failure the bound is 1 - 0.05^(1/10) = 0.26, of 2 in 30 it is 0.20.
-    let results = requirements(&campaign, &scores);
+    let results = requirements(&campaign, &[], &scores);
     assert_eq!(results.len(), 2);
     assert!(results.iter().all(|result| result.is_met()), "{results:?}");
     let strict = campaign.clone().with(|own| {
         for requirement in &mut own.requirements {
-            requirement.failure_rate_upper_95 = 0.25;
+            requirement.limit = 0.25;
         }
     });
-    let results = requirements(&strict, &scores);
+    let results = requirements(&strict, &[], &scores);
     let [none, all] = results.as_slice() else {
         panic!("{results:?}");
     };
@@ -139,7 +140,7 @@ fn each_stratum_has_its_own_failure_rates_and_may_be_required() {
     assert_eq!((all.subject(), all.limit), ("ftc".into(), 0.25));
     assert_eq!((none.is_met(), none.failed, none.n), (false, 0, 10));
     assert_eq!((all.is_met(), all.failed, all.n), (true, 2, 30));
-    assert!((none.upper_95 - (1.0 - 0.05_f64.powf(0.1))).abs() < 1e-9);
+    assert!((none.bound_95.unwrap() - (1.0 - 0.05_f64.powf(0.1))).abs() < 1e-9);
 }
 
 #[test]
@@ -260,6 +261,7 @@ fn said(failures: [usize; 2], ratio: f64) -> String {
         &campaign,
         &summarise(&campaign, &scores),
         &compare(&campaign, &scores),
+        &[],
     );
     assert_eq!(sentences.len(), 1, "{sentences:?}");
     sentences[0].clone()
@@ -340,6 +342,7 @@ fn the_verdict_on_one_episode_claims_nothing_of_others() {
         &campaign,
         &summarise(&campaign, &scores),
         &compare(&campaign, &scores),
+        &[],
     );
     assert_eq!(
         said,
@@ -354,14 +357,14 @@ fn the_verdict_on_one_episode_claims_nothing_of_others() {
 fn a_single_controller_has_a_verdict_of_its_own() {
     let campaign = campaign(30).with(|own| own.controllers.truncate(1));
     let scores = scores(&campaign, |_, _| (Status::Ok, 0.01));
-    let said = verdict(&campaign, &summarise(&campaign, &scores), &[]);
+    let said = verdict(&campaign, &summarise(&campaign, &scores), &[], &[]);
     // 1 - 0.05^(1/30) = 0.09503, and a bound is never rounded down.
     assert_eq!(
         said,
         ["ftc fails in 0 of 30 episodes: with 95 % confidence its failure rate is below 9.51 %"]
     );
     let scores = self::scores(&campaign, |_, _| (Status::Exceeded, 0.01));
-    let said = verdict(&campaign, &summarise(&campaign, &scores), &[]);
+    let said = verdict(&campaign, &summarise(&campaign, &scores), &[], &[]);
     // Wilson's interval of 30 of 30 begins at 30 / (30 + 1.96^2) = 0.8865.
     assert_eq!(
         said,
@@ -418,6 +421,7 @@ fn four_episodes_do_not_make_a_verdict() {
         &campaign,
         &summarise(&campaign, &scores),
         &compare(&campaign, &scores),
+        &[],
     )
     .join("");
     assert!(
@@ -435,6 +439,7 @@ fn two_episodes_that_diverge_have_no_errors_to_compare() {
         &campaign,
         &summarise(&campaign, &scores),
         &compare(&campaign, &scores),
+        &[],
     )
     .join("");
     assert!(
@@ -456,6 +461,7 @@ fn a_diverged_half_makes_an_error_infinitely_smaller() {
         &campaign,
         &summarise(&campaign, &scores),
         &compare(&campaign, &scores),
+        &[],
     )
     .join("");
     assert!(
@@ -464,4 +470,40 @@ fn a_diverged_half_makes_an_error_infinitely_smaller() {
         "{said}"
     );
     assert!(!said.to_lowercase().contains("nan"), "{said}");
+}
+
+#[test]
+fn a_controller_that_chatters_does_not_do_better_however_closely_it_follows() {
+    let campaign = campaign(60);
+    let scores = scores(&campaign, |controller, episode| {
+        let scatter = 1.0 + 0.01 * (episode % 7) as f64;
+        (Status::Ok, 0.01 * [1.0, 3.0][controller] * scatter)
+    });
+    let (summary, comparisons) = (summarise(&campaign, &scores), compare(&campaign, &scores));
+    let chatters = |controller: &str| Chatter {
+        controller: controller.to_string(),
+        sentence: format!("{controller} chatters"),
+    };
+    let said = |chattering: &[Chatter]| verdict(&campaign, &summary, &comparisons, chattering);
+    assert!(said(&[])[0].starts_with("ftc does better than pid: "));
+    let found = said(&[chatters("ftc")]);
+    assert_eq!(found[0], "ftc chatters");
+    assert!(
+        found[1].starts_with("ftc follows more closely than pid, but chatters: "),
+        "{found:?}"
+    );
+    // Where both do, it is no difference; where the other does, it is no merit lost.
+    for chattering in [
+        vec![chatters("ftc"), chatters("pid")],
+        vec![chatters("pid")],
+    ] {
+        let found = said(&chattering);
+        assert!(
+            found
+                .last()
+                .unwrap()
+                .starts_with("ftc does better than pid: "),
+            "{found:?}"
+        );
+    }
 }

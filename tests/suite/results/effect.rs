@@ -33,6 +33,7 @@ fn said(campaign: &Campaign, scores: &Scores) -> String {
         campaign,
         &summarise(campaign, scores),
         &compare(campaign, scores),
+        &[],
     );
     assert_eq!(sentences.len(), 1, "{sentences:?}");
     sentences[0].clone()

@@ -3,8 +3,8 @@
 use crate::common::{altered, gains_of_groups, tables};
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
-use urts_mc::results::fairness::{Terms, terms, unlike};
 use urts_mc::results::tables::Tables;
+use urts_mc::results::{Terms, terms, unlike};
 
 fn found(campaign: &Campaign) -> (Vec<Terms>, Tables) {
     let tables = tables(campaign, Precision::F32);

@@ -25,10 +25,9 @@ fn amplitudes(scenarios: &Scenarios, simulated: Scenario, rad_s: f64) -> Grouped
 }
 
 /// The errors at the frequency of the disturbance, without and with the FTC.
-pub(super) fn revealed(scenarios: &Scenarios) -> Found {
+pub(super) fn revealed(scenarios: &Scenarios, pid: Scenario) -> Found {
     let rad_s = scenarios.met.force_rad_s;
-    let [pid, ftc] =
-        [Scenario::Pid, Scenario::Ftc].map(|simulated| amplitudes(scenarios, simulated, rad_s));
+    let [pid, ftc] = [pid, Scenario::Ftc].map(|simulated| amplitudes(scenarios, simulated, rad_s));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(
@@ -44,9 +43,9 @@ pub(super) fn revealed(scenarios: &Scenarios) -> Found {
 }
 
 /// The errors at the frequency of the sensor fault beside those at the frequency of the disturbance.
-pub(super) fn insignificant(scenarios: &Scenarios) -> Found {
+pub(super) fn insignificant(scenarios: &Scenarios, pid: Scenario) -> Found {
     let (fault_rad_s, force_rad_s) = (scenarios.met.fault_rad_s(), scenarios.met.force_rad_s);
-    let of = |rad_s: f64| amplitudes(scenarios, Scenario::Pid, rad_s);
+    let of = |rad_s: f64| amplitudes(scenarios, pid, rad_s);
     let (fault, force) = (of(fault_rad_s), of(force_rad_s));
     let shares = quotients(&fault, &force);
     Found {
@@ -85,11 +84,11 @@ pub(super) fn smaller(scenarios: &Scenarios) -> Found {
 
 /// The errors of some channels at the frequency of the sensor fault, beside its even harmonics: a symmetric square wave
 /// has only odd ones.
-pub(super) fn visible(scenarios: &Scenarios, channels: &[usize]) -> Found {
+pub(super) fn visible(scenarios: &Scenarios, pid: Scenario, channels: &[usize]) -> Found {
     let base_rad_s = scenarios.met.fault_rad_s();
     let of = |harmonic: f64| {
         let own = channels.iter();
-        top(own.map(|channel| amplitude(scenarios, Scenario::Pid, *channel, harmonic * base_rad_s)))
+        top(own.map(|channel| amplitude(scenarios, pid, *channel, harmonic * base_rad_s)))
     };
     let [first, second, fourth] = [1.0, 2.0, 4.0].map(of);
     let unit = channels
@@ -112,16 +111,16 @@ pub(super) fn visible(scenarios: &Scenarios, channels: &[usize]) -> Found {
 }
 
 /// Whether the episode under the PID ends within bounds.
-pub(super) fn stable(scenarios: &Scenarios) -> Found {
+pub(super) fn stable(scenarios: &Scenarios, pid: Scenario) -> Found {
     let largest = |from_s: f64, until_s: f64| {
         worst_of_groups(scenarios, |channel| {
-            let errors = scenarios.series(Scenario::Pid, channel, |shown| shown.e);
+            let errors = scenarios.series(pid, channel, |shown| shown.e);
             errors.largest(from_s..until_s)
         })
     };
-    if let Some(lost_s) = scenarios.lost_s(Scenario::Pid) {
+    if let Some(lost_s) = scenarios.lost_s(pid) {
         return Found {
-            measured: format!("{} diverges within {lost_s:.2} s", Scenario::Pid.name()),
+            measured: format!("{} diverges within {lost_s:.2} s", pid.name()),
             holds: Some(false),
             read: Vec::new(),
         };
@@ -147,7 +146,7 @@ pub(super) fn stable(scenarios: &Scenarios) -> Found {
 }
 
 /// The RMS errors of both controllers.
-pub(super) fn worse(scenarios: &Scenarios) -> Found {
+pub(super) fn worse(scenarios: &Scenarios, pid: Scenario) -> Found {
     let of = |simulated: Scenario| {
         grouped(scenarios, |channels| {
             rms(channels.iter().flat_map(|channel| {
@@ -156,7 +155,7 @@ pub(super) fn worse(scenarios: &Scenarios) -> Found {
             }))
         })
     };
-    let (ftc, pid) = (of(Scenario::Ftc), of(Scenario::Pid));
+    let (ftc, pid) = (of(Scenario::Ftc), of(pid));
     let factors = quotients(&pid, &ftc);
     Found {
         measured: format!(

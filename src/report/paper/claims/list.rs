@@ -1,8 +1,8 @@
 //! The claims of Section V, sentence by sentence, each with what the episodes say about it.
 
-use super::found::{Claim, SETTLED_S, decide};
+use super::found::{Claim, SETTLED_S, decide, decide_of_pid};
 use super::{baseline, errors, signals};
-use crate::report::paper::scenarios::Scenario::{Ftc, OnCourse, Pid};
+use crate::report::paper::scenarios::Scenario::{Ftc, OnCourse};
 use crate::report::paper::scenarios::Scenarios;
 
 /// What counts as "at once", s: half of that, for the paper sets the robot apart from the UAV.
@@ -152,32 +152,32 @@ fn about_signals(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
 /// Figures 19 and 20: which faults show under the PID.
 fn about_faults_shown(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
     vec![
-        decide(
+        decide_of_pid(
             "Fig. 19",
             "UAV: without the FTC the actuator fault shows in the tracking error",
             uavs,
-            &[Ftc, Pid],
+            (&[Ftc], false),
             baseline::revealed,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 20",
             "robot: without the FTC the actuator fault shows in the tracking error",
             robots,
-            &[Ftc, Pid],
+            (&[Ftc], false),
             baseline::revealed,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 19",
             "UAV: under the PID the sensor fault is insignificant beside the actuator fault",
             uavs,
-            &[Pid],
+            (&[], false),
             baseline::insignificant,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 20",
             "robot: under the PID the sensor fault is insignificant beside the actuator fault",
             robots,
-            &[Pid],
+            (&[], false),
             baseline::insignificant,
         ),
         decide(
@@ -194,19 +194,19 @@ fn about_faults_shown(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
             &[Ftc],
             baseline::smaller,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 19",
             "UAV: under the PID the sensor fault's period shows in the attitude x4, x5, x6",
             uavs,
-            &[Pid],
-            |scenarios| baseline::visible(scenarios, &ATTITUDE),
+            (&[], false),
+            |scenarios, pid| baseline::visible(scenarios, pid, &ATTITUDE),
         ),
-        decide(
+        decide_of_pid(
             "Fig. 20",
             "robot: under the PID the sensor fault's period shows in the joints x5, x6, x11, x12",
             robots,
-            &[Pid],
-            |scenarios| baseline::visible(scenarios, &JOINTS),
+            (&[], false),
+            |scenarios, pid| baseline::visible(scenarios, pid, &JOINTS),
         ),
     ]
 }
@@ -215,32 +215,32 @@ fn about_faults_shown(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
 fn about_the_pid(uavs: &Scenarios, robots: &Scenarios) -> Vec<Claim> {
     vec![
         // Whether an episode ends is what this asks, so one that does not is an answer.
-        decide(
+        decide_of_pid(
             "Fig. 19",
             "UAV: the PID stays stable",
             uavs,
-            &[],
+            (&[], true),
             baseline::stable,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 20",
             "robot: the PID stays stable",
             robots,
-            &[],
+            (&[], true),
             baseline::stable,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 19",
             "UAV: the PID follows much worse than the FTC",
             uavs,
-            &[Ftc, Pid],
+            (&[Ftc], false),
             baseline::worse,
         ),
-        decide(
+        decide_of_pid(
             "Fig. 20",
             "robot: the PID follows much worse than the FTC",
             robots,
-            &[Ftc, Pid],
+            (&[Ftc], false),
             baseline::worse,
         ),
     ]
