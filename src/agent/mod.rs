@@ -134,6 +134,15 @@ impl Agent {
         }
     }
 
+    /// What was assumed or left out in reading a robot's file, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::Uav(_) => &[],
+            Self::Biped(biped) => &biped.robot.notes,
+        }
+    }
+
     /// The file that it was read from, if there is one.
     #[must_use]
     pub fn file(&self) -> Option<&RobotFile> {

@@ -2,6 +2,7 @@
 
 use super::overlay::{Setting, SettingError};
 use crate::util::suggest::nearest;
+use crate::util::text_file::quoted;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -88,7 +89,7 @@ pub(super) fn syntax(
     };
     CampaignError::Syntax {
         path: path.to_path_buf(),
-        message: format!("{place}{}{remedy}", plainly(message)),
+        message: format!("{}{}{remedy}", quoted(&place), plainly(message)),
     }
 }
 

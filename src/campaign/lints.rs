@@ -38,8 +38,10 @@ fn of_group(group: &AgentGroup) -> impl Iterator<Item = String> {
     let faults = group.faults.iter().enumerate();
     let unfinished =
         faults.filter_map(|(index, fault)| absent(index, fault).or(unfinished(index, fault)));
-    unreached(group)
-        .into_iter()
+    let robot = group.agent.notes().iter();
+    let robot = robot.map(|note| format!("agent.robot: {note}"));
+    robot
+        .chain(unreached(group))
         .chain(overwhelming(group))
         .chain(unfinished)
 }

@@ -4,14 +4,17 @@ use super::check::Check;
 use super::common::Common;
 use super::error::CampaignError;
 use super::file::CampaignFile;
+use super::gallery::of_gallery;
 use super::group::GroupParts;
 use super::overlay::Setting;
 use super::requirement::{Compared, Requirement};
 use super::source::Source;
 use super::validate::validate;
 use super::validated::Campaign;
+use crate::util::text_file::read_text;
 use serde::Deserialize;
 use std::fmt::Display;
+use std::io::{Error, ErrorKind};
 use std::path::Path;
 use toml::de::ValueDeserializer;
 
@@ -29,10 +32,16 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`]; what comes from a setting names it as its place.
     pub fn load_with(path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
-        let text = std::fs::read_to_string(path).map_err(|source| CampaignError::Read {
+        let failed = |source| CampaignError::Read {
             path: path.to_path_buf(),
             source,
-        })?;
+        };
+        if let Some(found) = of_gallery(path) {
+            let (path, text) =
+                found.map_err(|reason| failed(Error::new(ErrorKind::NotFound, reason)))?;
+            return Self::parse_with(text, &path, overlay);
+        }
+        let text = read_text(path).map_err(failed)?;
         let campaign = Self::parse_with(&text, path, overlay)?;
         campaign.require_files()?;
         Ok(campaign)

@@ -7,6 +7,7 @@ pub mod distribution;
 mod disturbances_and_faults;
 pub mod error;
 pub mod file;
+pub mod gallery;
 mod group;
 pub(crate) mod kinds;
 pub mod lints;

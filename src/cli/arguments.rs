@@ -1,5 +1,7 @@
 //! The command line: commands, their arguments and examples.
 
+use super::compare::CompareArguments;
+use super::new::NewArguments;
 use clap::builder::{PossibleValuesParser, StyledStr};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -47,6 +49,14 @@ pub(crate) enum Command {
         "urts-mc run campaigns/smoke.toml --quiet --junit reports/smoke.xml",
     ]))]
     Run(RunArguments),
+    /// Write a campaign to begin with, from one of the gallery
+    #[command(after_help = examples(&[
+        "urts-mc new mine --kind uav",
+        "urts-mc new walk --from biped-turn",
+        "urts-mc new --list",
+        "urts-mc run gallery:smoke --out reports/gallery",
+    ]))]
+    New(NewArguments),
     /// Check a campaign, synthesize its gains, show what would be drawn; simulates nothing
     #[command(after_help = examples(&[
         "urts-mc check campaigns/uav-paper.toml",
@@ -115,6 +125,19 @@ pub(crate) enum Command {
         "urts-mc devices --json",
     ]))]
     Devices(DevicesArguments),
+    /// List the columns of the tables: type, unit, meaning, and when a cell is empty
+    #[command(after_help = examples(&[
+        "urts-mc columns",
+        "urts-mc columns --json",
+    ]))]
+    Columns {
+        /// Print as JSON
+        #[arg(long)]
+        json: bool,
+        /// Print as Markdown, as in the chapter of the documentation
+        #[arg(long, conflicts_with = "json")]
+        markdown: bool,
+    },
     /// Print the JSON Schema of the campaign file
     #[command(after_help = examples(&[
         "urts-mc schema > campaign.schema.json",
@@ -194,8 +217,9 @@ pub(crate) struct EngineArguments {
     /// and the CPU otherwise
     #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
     pub(crate) backend: BackendChoice,
-    /// Use the GPU whose name contains this, the only way to a software one
-    #[arg(long, value_name = "NAME")]
+    /// Use the GPU whose name contains this, or that of this number in
+    /// urts-mc devices; the only way to a software one
+    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     pub(crate) adapter: Option<String>,
     /// Number format of the episode loop; f64 is the reference,
     /// on the CPU
@@ -244,48 +268,6 @@ pub(crate) struct TuneArguments {
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct CompareArguments {
-    /// Output directory of the run to compare with, "A"
-    pub(crate) a: PathBuf,
-    /// Output directory of the run that may have become worse, "B"
-    pub(crate) b: PathBuf,
-    /// Compare a controller of B with another one of A, such as ftc-tuned=ftc;
-    /// without it those that are in both. Repeatable
-    #[arg(long, value_name = "B=A", verbatim_doc_comment, value_parser = pair)]
-    pub(crate) pair: Vec<[String; 2]>,
-    /// What has to be proved of the ratio of B's numbers to A's, such as
-    /// "rmse position p50 <= 1.05". Repeatable
-    #[arg(long, value_name = "LIMIT", verbatim_doc_comment)]
-    pub(crate) ratio: Vec<String>,
-    /// The same of their difference, such as "failure_rate <= 0.01". Repeatable
-    #[arg(long, value_name = "LIMIT")]
-    pub(crate) difference: Vec<String>,
-    /// Output directory [default: reports/<name of B>-against-<name of A>]
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
-    /// Write a JUnit XML file for CI: pairs and limits as test cases
-    #[arg(long, value_name = "FILE")]
-    pub(crate) junit: Option<PathBuf>,
-    /// Write even where the output directory holds something else
-    #[arg(long)]
-    pub(crate) overwrite: bool,
-    /// Print the findings as JSON on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Print nothing but errors and what --json asks for
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-}
-
-/// Two controllers.
-fn pair(text: &str) -> Result<[String; 2], String> {
-    match text.split_once('=') {
-        Some((b, a)) if !b.is_empty() && !a.is_empty() => Ok([b.to_string(), a.to_string()]),
-        _ => Err("name a controller of B and one of A, such as ftc-tuned=ftc".to_string()),
-    }
 }
 
 #[derive(Debug, Args)]

@@ -25,6 +25,16 @@ impl EngineArguments {
                 "--simd {name}: this processor lacks it; use auto"
             )));
         }
+        if self
+            .adapter
+            .as_ref()
+            .is_some_and(|name| name.trim().is_empty())
+        {
+            return Err(Failure::usage(
+                "--adapter \"\": an empty name is part of every name; give a part of one, or a number of urts-mc devices"
+                    .into(),
+            ));
+        }
         let backend = match (self.backend, &self.adapter) {
             (BackendChoice::Gpu, adapter) => Backend::Gpu {
                 adapter: adapter.clone(),

@@ -1,19 +1,21 @@
 //! The commands.
 
 mod arguments;
+mod compare;
 mod completions;
 mod console;
 mod engine;
 pub(crate) mod exit;
 mod junit;
+mod new;
 mod progress;
 
 pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
 
 use arguments::{
-    CheckArguments, Command, CompareArguments, DevicesArguments, Overrides, PlanArguments,
-    ReplayArguments, RunArguments, SynthesizeArguments, TuneArguments,
+    CheckArguments, Command, DevicesArguments, Overrides, PlanArguments, ReplayArguments,
+    RunArguments, SynthesizeArguments, TuneArguments,
 };
 use completions::completions;
 use console::{print, print_json, print_note};
@@ -27,19 +29,18 @@ use urts_mc::backend::gpu::adapters;
 use urts_mc::campaign::Campaign;
 use urts_mc::campaign::lints::cautions;
 use urts_mc::controllers::GainSet;
-use urts_mc::report::junit::junit_of_comparison;
 use urts_mc::report::paper::{claim_dir, paper};
 use urts_mc::report::problems::shortcoming;
 use urts_mc::report::requirements::unmet;
 use urts_mc::report::terminal::Detail;
-use urts_mc::report::{Length, comparison, regressions, report, terminal, trace, tuning};
+use urts_mc::report::{Length, columns, columns_chapter, report, terminal, trace, tuning};
 use urts_mc::results::can_be_judged;
-use urts_mc::run::compare::{self, Asked, compare_runs};
+use urts_mc::results::dictionary::DICTIONARY;
 use urts_mc::run::directory::{OutputDir, OutputFile};
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
 use urts_mc::run::tune::{self, Structure};
-use urts_mc::run::{Extras, Findings, run};
+use urts_mc::run::{Extras, Findings, Labels, run};
 use urts_mc::synthesis::{Preset, synthesize};
 
 /// Carries out a command.
@@ -65,9 +66,10 @@ fn elsewhere(command: &Command) -> &'static str {
 fn carry_out(command: Command) -> Result<Code, Failure> {
     match command {
         Command::Run(arguments) => run_command(&arguments),
+        Command::New(arguments) => new::new_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Tune(arguments) => tune_command(&arguments),
-        Command::Compare(arguments) => compare_command(&arguments),
+        Command::Compare(arguments) => compare::compare_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),
         Command::Report { run, full } => {
@@ -83,6 +85,18 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
         }
         Command::Plan(arguments) => plan_command(&arguments),
         Command::Devices(arguments) => devices_command(&arguments),
+        Command::Columns { json: true, .. } => {
+            print_json(&DICTIONARY)?;
+            Ok(Code::Done)
+        }
+        Command::Columns { markdown, .. } => {
+            print(&if markdown {
+                columns_chapter()
+            } else {
+                columns()
+            })?;
+            Ok(Code::Done)
+        }
         Command::Schema => {
             print_json(&Campaign::schema())?;
             Ok(Code::Done)
@@ -202,36 +216,6 @@ fn tune_command(arguments: &TuneArguments) -> Result<Code, Failure> {
     Ok(Code::Done)
 }
 
-fn compare_command(arguments: &CompareArguments) -> Result<Code, Failure> {
-    let CompareArguments { a, b, .. } = arguments;
-    let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = |run: &Path| run.file_name().unwrap_or_default().display().to_string();
-        Path::new("reports").join(format!("{}-against-{}", name(b), name(a)))
-    });
-    let dir = compare::claim(&out, arguments.overwrite)?;
-    let junit = arguments.junit.as_deref().map(OutputFile::claim);
-    let junit = junit.transpose()?;
-    let asked = Asked {
-        pairs: arguments.pair.clone(),
-        ratios: arguments.ratio.clone(),
-        differences: arguments.difference.clone(),
-    };
-    let found = compare_runs(a, b, &asked)?;
-    compare::write(&found, &comparison(&found), &dir)?;
-    if let Some(file) = junit {
-        file.write(junit_of_comparison(&found)?.as_bytes())?;
-    }
-    if arguments.json {
-        print_json(&found)?;
-    } else if !arguments.quiet {
-        print(&terminal::comparison(&found, &out))?;
-    }
-    match regressions(&found) {
-        None => Ok(Code::Done),
-        Some(worse) => Err(Failure::new(Code::Unmet, worse)),
-    }
-}
-
 fn plan_command(arguments: &PlanArguments) -> Result<Code, Failure> {
     let PlanArguments {
         failure_rate,
@@ -333,7 +317,8 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
     let replayed = replay(run, *episode, controller, *interval);
     drop(shown);
     let replayed = replayed?;
-    OutputFile::claim(&files.table)?.write_parquet(&replayed.table())?;
+    let labels = Labels::new(&replayed.campaign, "replay");
+    OutputFile::claim(&files.table)?.write_parquet(&replayed.table(), &labels)?;
     let figures = trace(&replayed);
     OutputFile::claim(&files.page)?.write(figures.html.as_bytes())?;
     OutputFile::claim(&files.picture)?.write(figures.svg.as_bytes())?;

@@ -5,6 +5,7 @@ use super::gain_set::{ChannelController, Findings, GainSet, SimulatedController}
 use crate::agent::{ChannelGroup, ChannelRole};
 use crate::campaign::{AgentGroup, Campaign};
 use crate::synthesis::{ChannelDesign, ControllerGains};
+use crate::util::text_file::read_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -142,7 +143,7 @@ fn json(value: &impl Serialize) -> serde_json::Value {
 
 /// The text of a gains.json.
 pub(super) fn text_of(path: &Path) -> Result<String, GainsError> {
-    std::fs::read_to_string(path)
+    read_text(path)
         .map_err(|error| broken(path, format!("cannot be read ({error}); name a gains.json")))
 }
 

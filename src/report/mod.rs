@@ -3,6 +3,7 @@
 //! Run data (what the directory holds) becomes a document (what is to be said), which becomes HTML and Markdown (how it
 //! looks).
 
+mod columns;
 mod comparison;
 mod episode;
 pub mod junit;
@@ -16,6 +17,7 @@ pub(crate) mod section;
 pub mod terminal;
 mod tuning;
 
+pub use columns::{columns, columns_chapter};
 pub use comparison::{comparison, regressions};
 pub use episode::{Trace, trace};
 pub use page::markdown::Length;

@@ -55,7 +55,7 @@ impl RunData {
     /// # Errors
     /// If there is no run, or a file of it is not what it should be.
     pub(crate) fn read(dir: &Path) -> Result<Self, ReportError> {
-        let manifest = Manifest::read(dir)?;
+        let manifest = Manifest::read_verified(dir)?;
         let campaign = manifest.campaign()?;
         let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
         let all =

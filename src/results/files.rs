@@ -64,6 +64,16 @@ pub const RUN_TABLES: &[RunTable] = &[
         make: |found| Cow::Borrowed(&found.tables.channels),
     },
     RunTable {
+        name: "faults",
+        is_large: true,
+        make: |found| Cow::Borrowed(&found.tables.faults),
+    },
+    RunTable {
+        name: "conditions",
+        is_large: true,
+        make: |found| Cow::Borrowed(&found.tables.conditions_drawn),
+    },
+    RunTable {
         name: "summary",
         is_large: false,
         make: |found| Cow::Owned(summary_table(&found.results.summary)),

@@ -8,12 +8,16 @@
 //! mixture; that each stratum has its share exactly, and not by chance, makes its intervals cautious, if anything
 //! (Hoeffding 1956, Annals of Mathematical Statistics 27:713-721). Intervals and tests that the sampling design does
 //! not allow ([`crate::random::allows`]) are absent; Student's t over the design's replicates takes the place of some.
+//!
+#![doc = include_str!("README.md")]
 
 mod all;
 mod columns;
+pub mod dictionary;
 mod fairness;
 pub mod files;
 pub mod flights;
+mod long_tables;
 pub mod measures;
 mod numbers;
 mod paired;

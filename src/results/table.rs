@@ -1,8 +1,8 @@
 //! A table that grows row by row.
 
 use polars::prelude::{
-    Column, DataFrame, Float64Chunked, IntoColumn, NamedFrom, NewChunkedArray, PlSmallStr,
-    PolarsError, Series,
+    Column, DataFrame, Float64Chunked, Int64Chunked, IntoColumn, NamedFrom, NewChunkedArray,
+    PlSmallStr, PolarsError, Series,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,7 +17,8 @@ pub struct Table {
     rows: usize,
 }
 
-/// A column under construction. A real that is not a number stands for "does not apply" and becomes a null.
+/// A column under construction. A real that is not a number and an empty name stand for "does not apply" and become a
+/// null.
 #[derive(Debug, Clone)]
 enum Values {
     Real(Vec<f64>),
@@ -67,7 +68,7 @@ impl Row<'_> {
         count, Count, u64, Some);
     cell!(/// A word of a fixed list.
         word, Word, &'static str, Some);
-    cell!(/// A name.
+    cell!(/// A name; an empty one where none applies.
         name, Name, Arc<str>, Some);
     cell!(/// Yes or no.
         flag, Flag, bool, Some);
@@ -151,10 +152,19 @@ impl Table {
                         .map(|value| (!value.is_nan()).then_some(*value));
                     Float64Chunked::from_iter_options(name, present).into_column()
                 }
-                Values::Count(values) => Series::new(name, values).into_column(),
+                // Signed, so that one count less another is a number in every program that reads the table.
+                Values::Count(values) => {
+                    let counts = values.iter().copied();
+                    let signed =
+                        counts.map(|count| count.and_then(|count| i64::try_from(count).ok()));
+                    Int64Chunked::from_iter_options(name, signed).into_column()
+                }
                 Values::Word(values) => Series::new(name, values).into_column(),
                 Values::Name(values) => {
-                    let names: Vec<Option<&str>> = values.iter().map(Option::as_deref).collect();
+                    let names = values.iter().map(Option::as_deref);
+                    let names: Vec<Option<&str>> = names
+                        .map(|name| name.filter(|name| !name.is_empty()))
+                        .collect();
                     Series::new(name, names).into_column()
                 }
                 Values::Flag(values) => Series::new(name, values).into_column(),

@@ -1,5 +1,6 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
+use super::long_tables::{add_conditions, add_faults};
 use super::scores::{ChannelGroupScores, ChannelScores, GroupScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
@@ -20,6 +21,10 @@ pub struct Tables {
     pub episodes: Table,
     /// A row per episode, controller, agent and channel.
     pub channels: Table,
+    /// A row per fault that an agent has.
+    pub faults: Table,
+    /// A row per number that was drawn.
+    pub conditions_drawn: Table,
     /// What the statistics read.
     pub scores: Scores,
     /// Names of the controllers, shared by all rows.
@@ -38,6 +43,8 @@ impl Tables {
         Self {
             episodes: Table::default(),
             channels: Table::default(),
+            faults: Table::default(),
+            conditions_drawn: Table::default(),
             names: campaign
                 .controllers
                 .iter()
@@ -74,6 +81,12 @@ impl Tables {
         }
         for ((_, values), condition) in self.scores.conditions.iter_mut().zip(&self.conditions) {
             values.push(condition.of(&applied));
+        }
+        for (index, (group, applied)) in groups().enumerate() {
+            let quantities = &self.quantities[index];
+            add_faults(&mut self.faults, campaign, group, applied);
+            let drawn = &mut self.conditions_drawn;
+            add_conditions(drawn, campaign, group, quantities, applied);
         }
         for controller in 0..campaign.controllers.len() {
             let judged: Vec<Vec<AgentVerdict<'_>>> = groups()

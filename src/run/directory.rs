@@ -1,11 +1,15 @@
 //! The directory of a run: who may write there, and files that appear whole or not at all.
 
 use super::error::{MANIFEST, OutputError, REPORTS};
+use super::integrity::inputs;
+use super::labels::Labels;
 use super::manifest::{Manifest, campaign_hash};
 use crate::campaign::Campaign;
 use crate::results::files::RUN_TABLES;
 use crate::results::table::Table;
-use polars::prelude::{CsvWriter, ParquetCompression, ParquetWriter, PolarsError, SerWriter};
+use polars::prelude::{
+    CsvWriter, KeyValueMetadata, ParquetCompression, ParquetWriter, PolarsError, SerWriter,
+};
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
@@ -36,7 +40,10 @@ impl OutputDir {
             Ok(run) if run.seed != campaign.seed || run.episodes > campaign.episodes => Some(
                 format!("a run of {} episodes with seed {}", run.episodes, run.seed),
             ),
-            Ok(_) => return Self::claim_for(path, overwrite, &|_| true, None),
+            Ok(run) => {
+                let other = other_files(&run, campaign);
+                return Self::claim_for(path, overwrite, &|_| true, other);
+            }
             Err(_) => None,
         };
         let whole = |name: &str| {
@@ -100,15 +107,22 @@ impl OutputDir {
         self.write_with(name, |file| file.write_all(content))
     }
 
-    /// Writes a table as Parquet.
+    /// Writes a table as Parquet, with labels in its metadata.
     ///
     /// # Errors
     /// If the table cannot be encoded or written.
-    pub fn write_parquet(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+    pub fn write_parquet(
+        &self,
+        name: &str,
+        table: &Table,
+        labels: &Labels,
+    ) -> Result<(), OutputError> {
         self.write_table(name, table, |file, frame| {
+            let metadata = labels.of(frame);
             ParquetWriter::new(file)
                 .with_compression(ParquetCompression::Snappy)
                 .with_row_group_size(Some(ROW_GROUP))
+                .with_key_value_metadata(Some(KeyValueMetadata::from_static(metadata)))
                 .finish(frame)
                 .map(|_| ())
         })
@@ -194,6 +208,14 @@ impl OutputDir {
     }
 }
 
+/// That a run of the same campaign was made with other files than the campaign names now.
+fn other_files(run: &Manifest, campaign: &Campaign) -> Option<String> {
+    let now = inputs(campaign);
+    let differs = |(path, hash): &(&String, &String)| now.get(*path) != Some(*hash);
+    let (path, _) = run.inputs.iter().find(differs)?;
+    Some(format!("a run of this campaign with another {path}"))
+}
+
 /// Makes a directory and a file in it, and takes both away again.
 fn try_to_write(dir: &Path) -> std::io::Result<()> {
     let absent: Vec<&Path> = dir
@@ -275,8 +297,8 @@ impl OutputFile {
     ///
     /// # Errors
     /// If the table cannot be encoded or written.
-    pub fn write_parquet(&self, table: &Table) -> Result<(), OutputError> {
-        self.dir.write_parquet(&self.name, table)
+    pub fn write_parquet(&self, table: &Table, labels: &Labels) -> Result<(), OutputError> {
+        self.dir.write_parquet(&self.name, table, labels)
     }
 }
 

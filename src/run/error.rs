@@ -11,6 +11,9 @@ pub const REPORTS: [&str; 2] = ["report.html", "report.md"];
 /// counts. Only the reports, which are made of the directory, come after it.
 pub const MANIFEST: &str = "manifest.json";
 
+/// File name of a run's gains.
+pub const GAINS: &str = "gains.json";
+
 /// Why a run cannot be written or read.
 #[derive(Debug, Error)]
 pub enum OutputError {
@@ -38,6 +41,14 @@ pub enum OutputError {
         /// The directory.
         path: PathBuf,
         /// Why.
+        reason: String,
+    },
+    /// A file of a run is not the one that it wrote.
+    #[error("{}: is not the file that the run wrote ({reason}); run the campaign again, or bring the file back", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// In what it differs.
         reason: String,
     },
     /// A table cannot be encoded.

@@ -1,6 +1,7 @@
 //! The manifest of a run: what it takes to do it again, and what it was done with.
 
 use super::error::{MANIFEST, OutputError};
+use super::integrity::{FileRecord, verify};
 use crate::backend::cpu::Precision;
 use crate::campaign::{Campaign, CampaignError, Setting};
 use crate::results::RequirementResult;
@@ -46,6 +47,12 @@ pub struct Manifest {
     /// What became of each `[[require]]`, in the campaign's order; empty in runs of older versions.
     #[serde(default)]
     pub requirements: Vec<RequirementResult>,
+    /// The files that it counts, by name: those that are read again; none in runs of older versions.
+    #[serde(default)]
+    pub files: BTreeMap<String, FileRecord>,
+    /// BLAKE3 hashes of the files that the campaign names, robots and gains, by their paths.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
     /// Why fewer were simulated than that, if so.
     pub interrupted: Option<String>,
     /// Number format of the episode loop.
@@ -102,6 +109,16 @@ impl Manifest {
         let text = std::fs::read_to_string(dir.join(MANIFEST))
             .map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
         serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
+    }
+
+    /// Reads the manifest of a run's directory, whose files have to be those that the run wrote.
+    ///
+    /// # Errors
+    /// If there is none, it is not one, or a file that it counts is missing or was changed.
+    pub fn read_verified(dir: &Path) -> Result<Self, OutputError> {
+        let manifest = Self::read(dir)?;
+        verify(dir, &manifest.files)?;
+        Ok(manifest)
     }
 
     /// The campaign that was simulated, with the run's seed and the number of episodes that was asked for.

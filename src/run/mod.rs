@@ -4,6 +4,8 @@ pub mod compare;
 pub mod directory;
 pub mod error;
 mod flights;
+pub mod integrity;
+mod labels;
 pub mod manifest;
 pub mod replay;
 pub mod replay_files;
@@ -15,15 +17,17 @@ pub mod tune;
 use crate::backend::gpu::{Gpu, GpuError};
 use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError, cautions};
-use crate::results::files::Found;
+use crate::results::files::{Found, RUN_TABLES};
 use crate::results::flights::Flights;
 use crate::results::scores::Scores;
 use crate::results::{Results, can_be_judged};
 use crate::simulation::cross_check::{CrossCheck, cross_check};
 use crate::simulation::{Engine, RunOptions, Simulation, SimulationError, open, simulate};
 use directory::OutputDir;
-use error::{MANIFEST, OutputError};
+use error::{GAINS, MANIFEST, OutputError};
 use flights::flights;
+use integrity::{FileRecord, inputs, records};
+pub use labels::Labels;
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
 use rayon::ThreadPool;
 use serde::Serialize;
@@ -165,18 +169,11 @@ pub fn run_on(
         extras.cross_check,
     );
     let episodes = simulation.episodes();
-    let Simulation {
-        tables,
-        stopping,
-        mut times,
-        segments,
-        interrupted,
-        ..
-    } = simulation;
+    let (tables, mut times) = (simulation.tables, simulation.times);
     times.cross_check_s = start.elapsed().as_secs_f64();
     times.synthesis_s = synthesis_s;
 
-    unless_more_is_there(out, interrupted.as_ref(), episodes)?;
+    unless_more_is_there(out, simulation.interrupted.as_ref(), episodes)?;
 
     progress(Progress::Statistics);
     let (results, flights, statistics_s) =
@@ -185,7 +182,8 @@ pub fn run_on(
 
     progress(Progress::Writing);
     let found = Found::new(campaign, &tables, &results, &flights);
-    times.writing_s = write_tables(found, &gains, extras.csv, out)?;
+    let (files, writing_s) = write_tables(found, &gains, extras.csv, out)?;
+    times.writing_s = writing_s;
     let mut robots = robots(campaign);
     let manifest = Manifest {
         name: campaign.name.clone(),
@@ -200,15 +198,17 @@ pub fn run_on(
         seed: campaign.seed,
         episodes,
         episodes_asked: campaign.episodes,
-        stopped: stopping.found(campaign),
+        stopped: simulation.stopping.found(campaign),
         verdict: results.verdict.clone(),
         unlike: results.unlike.clone(),
         harm: results.harm.clone(),
         requirements: results.requirements.clone(),
-        interrupted: interrupted.map(|error| error.to_string()),
+        interrupted: simulation.interrupted.map(|error| error.to_string()),
         precision: options.precision,
-        segments,
+        segments: simulation.segments,
         notes,
+        files,
+        inputs: inputs(campaign),
         cross_check,
         cross_check_missing,
         times,
@@ -236,6 +236,13 @@ fn robots(campaign: &Campaign) -> BTreeMap<String, String> {
         .collect()
 }
 
+/// The files that a run's manifest counts: those that are read again.
+fn counted() -> impl Iterator<Item = String> {
+    let tables = RUN_TABLES.iter();
+    let tables = tables.map(|table| format!("{}.parquet", table.name));
+    tables.chain([GAINS.to_string()])
+}
+
 /// Every statistic, the flights that are looked at, and the time that they took, s.
 fn statistics(
     campaign: &Campaign,
@@ -249,21 +256,19 @@ fn statistics(
     (results, flights, start.elapsed().as_secs_f64())
 }
 
-/// Writes all but the manifest; returns the time that it took, s.
+/// Writes all but the manifest; returns the records of the files, and the time that it took, s.
 fn write_tables(
     found: Found<'_>,
     gains: &[GainSet],
     csv: bool,
     out: &OutputDir,
-) -> Result<f64, RunError> {
+) -> Result<(BTreeMap<String, FileRecord>, f64), RunError> {
     let start = Instant::now();
     out.begin()?;
     tables::write(found, csv, out)?;
-    out.write(
-        "gains.json",
-        &pretty(&GainSet::to_file(found.campaign, gains))?,
-    )?;
-    Ok(start.elapsed().as_secs_f64())
+    out.write(GAINS, &pretty(&GainSet::to_file(found.campaign, gains))?)?;
+    let files = records(out.path(), counted())?;
+    Ok((files, start.elapsed().as_secs_f64()))
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.

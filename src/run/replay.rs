@@ -89,7 +89,7 @@ pub fn replay(
     controller: &str,
     interval_s: Option<f64>,
 ) -> Result<Replay, ReplayError> {
-    let manifest = Manifest::read(dir)?;
+    let manifest = Manifest::read_verified(dir)?;
     let campaign = manifest.campaign()?;
     if episode >= manifest.episodes {
         return Err(no_such_episode(episode, manifest.episodes));

@@ -3,3 +3,4 @@
 pub mod fixed_list;
 pub mod format;
 pub(crate) mod suggest;
+pub(crate) mod text_file;

@@ -17,6 +17,7 @@
 //! | `report` | what the report of a run says, and what a browser makes of it; the paper's figures and claims |
 //! | `cli` | commands, exit codes and error messages |
 //! | `house` | the layout of the sources: order of the rooms, circles, sizes |
+//! | `readers` | the tables in the hands of those who read them |
 //! | `readme` | what the README tells its readers to type |
 //!
 //! A test's name is a sentence. `val_` marks comparison with an independent source, `regress_` comparison with
@@ -43,6 +44,7 @@ mod draw;
 mod house;
 mod model;
 mod random;
+mod readers;
 mod readme;
 mod reference;
 mod report;

@@ -165,7 +165,10 @@ fn a_report_of_no_run_names_what_is_missing() {
     fs::remove_file(run.path("channels.parquet")).unwrap();
     let (code, said) = program(&["report", dir]);
     assert_eq!(code, 2);
-    assert!(said.contains("channels.parquet is missing"), "{said}");
+    assert!(
+        said.contains("channels.parquet: is not the file that the run wrote (No such file"),
+        "{said}"
+    );
     fs::write(run.path("channels.parquet"), "no table").unwrap();
     let (code, said) = program(&["report", dir]);
     assert_eq!(code, 2);

@@ -1,5 +1,6 @@
 //! What can be wrong with a robot file.
 
+use crate::util::text_file::read_text;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -46,7 +47,7 @@ pub enum RobotError {
 
 /// The text of a robot file.
 pub(super) fn read(path: &Path) -> Result<String, RobotError> {
-    std::fs::read_to_string(path).map_err(|source| RobotError::Read {
+    read_text(path).map_err(|source| RobotError::Read {
         path: path.to_path_buf(),
         source,
     })

@@ -11,6 +11,15 @@ pub(crate) const G1_PATH: &str = "campaigns/robots/g1_12dof.toml";
 /// The shipped G1.
 pub(crate) const G1: &str = include_str!("../../../campaigns/robots/g1_12dof.toml");
 
+/// The robots of the gallery, by their paths there.
+const GALLERY: &[(&str, &str)] = &[
+    ("gallery:/robots/g1_12dof.toml", G1),
+    (
+        "gallery:/robots/berkeley_humanoid.toml",
+        include_str!("../../../campaigns/robots/berkeley_humanoid.toml"),
+    ),
+];
+
 /// What a robot's file is.
 enum Format {
     Table,
@@ -50,7 +59,11 @@ impl Robot {
     /// If the file is unreadable, or neither a joint table nor a URDF by its name.
     pub fn text(path: &Path) -> Result<String, RobotError> {
         Format::of(path)?;
-        error::read(path)
+        let shipped = GALLERY.iter().find(|(own, _)| Path::new(own) == path);
+        match shipped {
+            Some((_, text)) => Ok((*text).to_string()),
+            None => error::read(path),
+        }
     }
 
     /// Checks the text of a robot's file; `path` says what it is, and is for messages.
@@ -58,9 +71,17 @@ impl Robot {
     /// # Errors
     /// As [`Robot::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, RobotError> {
+        Self::parse_with(text, path, &UrdfOptions::default())
+    }
+
+    /// The same with what a URDF does not say; a joint table has no use for it.
+    ///
+    /// # Errors
+    /// As [`Robot::load`].
+    pub fn parse_with(text: &str, path: &Path, options: &UrdfOptions) -> Result<Self, RobotError> {
         match Format::of(path)? {
             Format::Table => table::parse(text, path),
-            Format::Urdf => urdf::parse(text, path, &UrdfOptions::default()),
+            Format::Urdf => urdf::parse(text, path, options),
         }
     }
 

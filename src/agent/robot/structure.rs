@@ -31,6 +31,8 @@ pub struct Robot {
     pub standing_rad: [f64; JOINTS],
     /// Left and right leg.
     pub legs: [Leg; 2],
+    /// What was assumed or left out in reading its file, a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Robot {

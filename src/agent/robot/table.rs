@@ -56,6 +56,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Robot, RobotError> {
         base_height_m: height_m,
         standing_rad: file.q_nominal.0,
         legs,
+        notes: Vec::new(),
     })
 }
 

@@ -130,6 +130,11 @@ pub(super) fn find(
     match wanted {
         Wanted::Hardware => found.retain(|(_, own)| own.kind.is_hardware()),
         Wanted::Same(adapter) => found.retain(|(_, own)| own == adapter),
+        // A number counts them as `urts-mc devices` lists them: two adapters of one name are told apart by it.
+        Wanted::Named(name) if name.parse().is_ok_and(|index: usize| index < found.len()) => {
+            let index: usize = name.parse().unwrap_or_default();
+            found = found.into_iter().skip(index).take(1).collect();
+        }
         Wanted::Named(name) => {
             let name = name.to_lowercase();
             found.retain(|(_, own)| own.name.to_lowercase().contains(&name));

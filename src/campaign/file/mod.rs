@@ -51,6 +51,18 @@ pub struct AgentFile {
     /// Biped: a joint table (.toml) or a URDF; a relative path starts at the campaign file's folder (default: the
     /// Unitree G1).
     pub robot: Option<String>,
+    /// URDF: the link that carries both legs (default: found in the tree).
+    pub pelvis: Option<String>,
+    /// URDF: the first joint of the left leg (default: the one at y > 0 of the pelvis).
+    pub left_hip: Option<String>,
+    /// URDF: moving joints that are held at zero (default: all outside the legs).
+    pub locked: Option<Vec<String>>,
+    /// URDF: inertia of each joint's rotor as seen from the joint, kg m^2 (default: that of `<dynamics armature>`, else
+    /// 0.01).
+    pub armature_kg_m2: Option<f64>,
+    /// URDF: standing pose, the angles of the left leg's joints, then of the right one's, rad (default: zero, or the
+    /// nearest angle that a joint can reach). The soles are level in it.
+    pub standing_rad: Option<List<f64, 12>>,
     /// True mass over modelled mass (default 1); a biped's M and H as a whole.
     pub mass_scale: Option<Value>,
     /// True inertia over modelled inertia (default 1).

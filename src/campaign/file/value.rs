@@ -87,6 +87,8 @@ pub enum ChannelsFile {
     Word(String),
     /// Channel numbers from 1.
     Numbers(Vec<u32>),
+    /// Names of channels.
+    Names(Vec<String>),
     /// A list with something else in it, as it was written: no channels, but the names of the agent's are known only
     /// where it is refused.
     #[schemars(skip)]
@@ -302,7 +304,8 @@ impl<'de> Deserialize<'de> for Numbers {
 /// An entry of a list of channels.
 enum ChannelFile {
     Number(u32),
-    /// No channel's number, as it was written.
+    Name(String),
+    /// Neither, as it was written.
     Other(String),
 }
 
@@ -312,7 +315,7 @@ impl<'de> Deserialize<'de> for ChannelFile {
         impl Visitor<'_> for ChannelVisitor {
             type Value = ChannelFile;
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a channel's number, from 1")
+                formatter.write_str("a channel's name or number, from 1")
             }
             fn visit_i64<E: Error>(self, value: i64) -> Result<ChannelFile, E> {
                 let other = |_| ChannelFile::Other(value.to_string());
@@ -322,7 +325,7 @@ impl<'de> Deserialize<'de> for ChannelFile {
                 Ok(ChannelFile::Other(in_toml(value)))
             }
             fn visit_str<E: Error>(self, word: &str) -> Result<ChannelFile, E> {
-                Ok(ChannelFile::Other(format!("{word:?}")))
+                Ok(ChannelFile::Name(word.to_string()))
             }
         }
         deserializer.deserialize_any(ChannelVisitor)
@@ -336,7 +339,7 @@ impl<'de> Deserialize<'de> for ChannelsFile {
             type Value = ChannelsFile;
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
                 formatter.write_str(
-                    "\"all\", \"one\", or a list of channel numbers from 1 such as [1, 2]",
+                    "\"all\", \"one\", or a list of channels such as [\"x\", \"yaw\"] or [1, 6]",
                 )
             }
             fn visit_str<E: Error>(self, word: &str) -> Result<ChannelsFile, E> {
@@ -346,17 +349,24 @@ impl<'de> Deserialize<'de> for ChannelsFile {
                 let list: Vec<ChannelFile> = Vec::deserialize(SeqAccessDeserializer::new(list))?;
                 let number = |channel: &ChannelFile| match channel {
                     ChannelFile::Number(number) => Some(*number),
-                    ChannelFile::Other(_) => None,
+                    ChannelFile::Name(_) | ChannelFile::Other(_) => None,
                 };
-                let numbers: Option<Vec<u32>> = list.iter().map(number).collect();
+                let name = |channel: &ChannelFile| match channel {
+                    ChannelFile::Name(name) => Some(name.clone()),
+                    ChannelFile::Number(_) | ChannelFile::Other(_) => None,
+                };
                 let written = |channel: &ChannelFile| match channel {
                     ChannelFile::Number(number) => number.to_string(),
+                    ChannelFile::Name(name) => format!("{name:?}"),
                     ChannelFile::Other(text) => text.clone(),
                 };
-                Ok(numbers.map_or_else(
-                    || ChannelsFile::Others(list.iter().map(written).collect()),
-                    ChannelsFile::Numbers,
-                ))
+                let numbers: Option<Vec<u32>> = list.iter().map(number).collect();
+                let names: Option<Vec<String>> = list.iter().map(name).collect();
+                Ok(match (numbers, names) {
+                    (Some(numbers), _) => ChannelsFile::Numbers(numbers),
+                    (None, Some(names)) => ChannelsFile::Names(names),
+                    (None, None) => ChannelsFile::Others(list.iter().map(written).collect()),
+                })
             }
         }
         deserializer.deserialize_any(ChannelsVisitor)

@@ -1,11 +1,12 @@
 //! `[agent]`.
 
-use crate::agent::robot::{self, Robot, RobotError};
+use crate::agent::robot::{self, JOINTS, Robot, RobotError, UrdfOptions};
 use crate::agent::{ActuationKind, Agent, Biped, RobotFile, Uav};
 use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::parameter::Bounds;
+use std::path::Path;
 
 /// The paper's UAV, section V.
 const PAPER_MASS_KG: f64 = 2.0;
@@ -13,6 +14,17 @@ const PAPER_INERTIA_KG_M2: [f64; 3] = [1.25, 1.25, 2.2];
 const PAPER_DRAG_N_S_M: f64 = 0.01;
 const PAPER_ANGULAR_DRAG_N_M_S: f64 = 0.012;
 const PAPER_GRAVITY_M_S2: f64 = 9.81;
+
+/// The keys that only a URDF needs, and whether each is given.
+fn of_urdf(file: &AgentFile) -> [(&'static str, bool); 5] {
+    [
+        ("pelvis", file.pelvis.is_some()),
+        ("left_hip", file.left_hip.is_some()),
+        ("locked", file.locked.is_some()),
+        ("armature_kg_m2", file.armature_kg_m2.is_some()),
+        ("standing_rad", file.standing_rad.is_some()),
+    ]
+}
 
 impl Check<'_> {
     /// What the agents are; `robot` is the text of the robot's file, if it is not to be read.
@@ -23,7 +35,8 @@ impl Check<'_> {
     ) -> Result<Agent, CampaignError> {
         match file.kind {
             AgentKind::Uav => {
-                self.unused("agent", "uav", &[("robot", file.robot.is_some())])?;
+                let of_bipeds = [("robot", file.robot.is_some())];
+                self.unused("agent", "uav", &[&of_bipeds[..], &of_urdf(file)].concat())?;
                 self.uav(file).map(Agent::Uav)
             }
             AgentKind::Biped => {
@@ -64,12 +77,42 @@ impl Check<'_> {
                 Robot::text(&path).map_err(|error| self.no_robot(name, &error))?
             }
         };
+        let options = self.urdf_options(file, &path)?;
         let file = RobotFile { path, text };
         Ok(Biped {
             actuation,
-            robot: Robot::parse(&file.text, &file.path).map_err(Box::new)?,
+            robot: Robot::parse_with(&file.text, &file.path, &options).map_err(Box::new)?,
             file,
         })
+    }
+
+    /// What a campaign says of a URDF; a joint table says it itself.
+    fn urdf_options(&self, file: &AgentFile, path: &Path) -> Result<UrdfOptions, CampaignError> {
+        let given = of_urdf(file).into_iter().find(|(_, given)| *given);
+        let is_urdf = path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"));
+        if let (Some((key, _)), false) = (given, is_urdf) {
+            return Err(self.invalid(
+                format!("agent.{key}"),
+                "given",
+                "a joint table says this itself; only a URDF does not",
+                "remove it, or write it into the table",
+            ));
+        }
+        let mut options = UrdfOptions {
+            pelvis: file.pelvis.clone(),
+            left_hip: file.left_hip.clone(),
+            locked: file.locked.clone().unwrap_or_default(),
+            ..UrdfOptions::default()
+        };
+        if let Some(armature_kg_m2) = file.armature_kg_m2 {
+            let key = "agent.armature_kg_m2";
+            let armature_kg_m2 = self.number(key, armature_kg_m2, Bounds::NonNegative)?;
+            options.armature_kg_m2 = Some([armature_kg_m2; JOINTS]);
+        }
+        options.standing_rad = file.standing_rad.as_ref().map(|list| list.0);
+        Ok(options)
     }
 
     /// A robot's file that is none, by the key that names it; what is wrong within one is said with the file's own

@@ -6,6 +6,7 @@ use crate::campaign::disturbances_and_faults::FaultChannels;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::kinds::{FaultKind, FaultTarget};
+use crate::util::suggest::did_you_mean;
 
 /// The channel whose actuator is the thrust where there is no other force.
 const THRUST: usize = HEIGHT;
@@ -87,6 +88,33 @@ impl Check<'_> {
         Ok(channels)
     }
 
+    /// Channels by their names.
+    fn named_channels(&self, key: &str, names: &[String]) -> Result<FaultChannels, CampaignError> {
+        let mut channels = Vec::new();
+        for (place, name) in names.iter().enumerate() {
+            let key = format!("{key}[{place}]");
+            let Some(channel) = self.channels.iter().position(|own| **own == **name) else {
+                let known: Vec<&str> = self.channels.iter().map(|own| &**own).collect();
+                return Err(self.invalid(
+                    key,
+                    format!("{name:?}"),
+                    &format!("the channels are {}", known.join(", ")),
+                    &did_you_mean(name, known, "name one of them"),
+                ));
+            };
+            if channels.contains(&channel) {
+                return Err(self.invalid(
+                    key,
+                    format!("{name:?}"),
+                    "this channel is in the list already",
+                    "name it once",
+                ));
+            }
+            channels.push(channel);
+        }
+        Ok(FaultChannels::These(channels))
+    }
+
     fn fault_channels(
         &self,
         key: &str,
@@ -99,6 +127,9 @@ impl Check<'_> {
                 Ok(FaultChannels::These((0..count).collect()))
             }
             Some(ChannelsFile::Word(word)) if word == "one" => Ok(FaultChannels::One),
+            Some(ChannelsFile::Names(names)) if !names.is_empty() => {
+                self.named_channels(key, names)
+            }
             Some(ChannelsFile::Numbers(numbers))
                 if !numbers.is_empty()
                     && numbers
@@ -114,7 +145,7 @@ impl Check<'_> {
                 let names = (1..).zip(&self.channels);
                 let names: Vec<String> = names.map(|(k, name)| format!("{k} {name}")).collect();
                 let limit = format!(
-                    "\"all\", \"one\", or a list of different channel numbers from 1 to {count}: {}",
+                    "\"all\", \"one\", or a list of different channels, names or numbers from 1 to {count}: {}",
                     names.join(", ")
                 );
                 Err(self.invalid(key, shown(other), &limit, "give such a list"))
@@ -128,6 +159,7 @@ fn shown(channels: &ChannelsFile) -> String {
     match channels {
         ChannelsFile::Word(word) => format!("{word:?}"),
         ChannelsFile::Numbers(numbers) => format!("{numbers:?}"),
+        ChannelsFile::Names(names) => format!("{names:?}"),
         ChannelsFile::Others(list) => format!("[{}]", list.join(", ")),
     }
 }

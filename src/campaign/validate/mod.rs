@@ -182,6 +182,17 @@ impl Check<'_> {
             Bounds::NonNegative,
         )?;
         let steps = (duration_s / step_s).round();
+        if !(steps <= MAX_STEPS) {
+            return Err(self.invalid(
+                "time.duration_s",
+                in_toml(duration_s),
+                &format!(
+                    "an episode has at most {MAX_STEPS} steps of time.step_s = {}",
+                    in_toml(step_s)
+                ),
+                "shorten it or take longer steps",
+            ));
+        }
         if steps < 1.0 || (steps * step_s - duration_s).abs() > 1e-6 * step_s {
             return Err(self.invalid(
                 "time.step_s",
@@ -192,17 +203,6 @@ impl Check<'_> {
                     in_toml(duration_s / steps.max(1.0)),
                     steps.max(1.0)
                 ),
-            ));
-        }
-        if steps > MAX_STEPS {
-            return Err(self.invalid(
-                "time.duration_s",
-                in_toml(duration_s),
-                &format!(
-                    "an episode has at most {MAX_STEPS} steps of time.step_s = {}",
-                    in_toml(step_s)
-                ),
-                "shorten it or take longer steps",
             ));
         }
         if settle_s >= duration_s {

@@ -103,10 +103,10 @@ pub enum WalkError {
         /// Distance to the support polygon, m.
         outside_m: f64,
     },
-    /// The inverse kinematics found no pose of the leg.
+    /// A foothold is farther away than the leg reaches.
     #[error(
         "at {t_s:.2} s the {foot} leg does not reach its foothold: the ankle is to be {distance_m:.3} \
-         m from the hip, a straight leg ends at {reach_m:.3} m; shorten the step or lower the pelvis"
+         m from the hip, its joints put it at most {reach_m:.3} m away; shorten the step or lower the pelvis"
     )]
     OutOfReach {
         /// When.
@@ -115,8 +115,23 @@ pub enum WalkError {
         foot: Foot,
         /// Distance from hip to ankle asked for, m.
         distance_m: f64,
-        /// The same distance with all joints at zero, m.
+        /// How far its joints put the ankle, m.
         reach_m: f64,
+    },
+    /// The inverse kinematics found no pose of the leg, though it would reach.
+    #[error(
+        "at {t_s:.2} s no joint angles were found that put the {foot} ankle where it is to be, {distance_m:.3} m from \
+         the hip: with the foot turned as there, they were found up to {found_m:.3} m; lower the pelvis or shorten the step"
+    )]
+    NoPose {
+        /// When.
+        t_s: f64,
+        /// The foot.
+        foot: Foot,
+        /// Distance from hip to ankle asked for, m.
+        distance_m: f64,
+        /// The largest distance, in that direction and with the foot so turned, for which a pose was found, m.
+        found_m: f64,
     },
     /// A knee is so straight that its leg cannot move along itself.
     #[error(

@@ -7,8 +7,9 @@ use super::feet::Ankle;
 use super::foot::Foot;
 use super::gait::Gait;
 use crate::agent::robot::kinematics::{by_leg, com_m, joined, leg_pose};
-use crate::agent::robot::{JOINTS, Leg, Robot};
+use crate::agent::robot::{JOINTS, LEG_JOINTS, Leg, Robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3, Vector6};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Largest component of the pose error at the solution, m and rad.
 const TOLERANCE: f64 = 1e-12;
@@ -16,6 +17,12 @@ const TOLERANCE: f64 = 1e-12;
 const MAX_ITERATIONS: u32 = 50;
 /// Largest turn of a joint in one iteration, rad: keeps the first pose from overshooting.
 const MAX_TURN_RAD: f64 = 0.5;
+/// Bends of the knee from which a pose is looked for, rad.
+const BENDS_RAD: [f64; 3] = [0.5, 1.0, 1.6];
+/// Rounds over the joints in the search for the reach of a leg.
+const SWEEPS: u32 = 40;
+/// Cosine of the angle between two axes about which joints turn alike.
+const ALIKE: f64 = 0.9;
 /// The fourth joint of a leg.
 const KNEE: usize = 3;
 /// Below it the joint rates that move the foot along the leg exceed ten times those of a bent one.
@@ -37,10 +44,7 @@ pub fn pose(
     for foot in Foot::BOTH {
         let leg = &robot.legs[foot.index()];
         let target = in_pelvis(leg, (pelvis, pelvis_height_m), ankles[foot.index()]);
-        let joints = solve(leg, &target, joints_rad[foot.index()])
-            .ok_or_else(|| out_of_reach(leg, foot, &target, t_s))?;
-        check(leg, &joints, t_s)?;
-        joints_rad[foot.index()] = joints;
+        joints_rad[foot.index()] = of_leg(leg, foot, &target, joints_rad[foot.index()], t_s)?;
     }
     Ok(joined(&joints_rad))
 }
@@ -100,6 +104,61 @@ fn in_pelvis(
     )
 }
 
+/// The joint angles of a leg: from the start, or, where that leads to none that the leg can take (a straight leg is
+/// singular, and a start may lie on the wrong side of it), from bent poses.
+fn of_leg(
+    leg: &Leg,
+    foot: Foot,
+    target: &Isometry3<f64>,
+    start_rad: Vector6<f64>,
+    t_s: f64,
+) -> Result<Vector6<f64>, WalkError> {
+    let from_start = solve(leg, target, start_rad);
+    let tried = from_start.map(|joints| check(leg, &joints, t_s).map(|()| joints));
+    if let Some(Ok(joints)) = tried {
+        return Ok(joints);
+    }
+    let solutions: Vec<Vector6<f64>> = bent(leg)
+        .into_iter()
+        .filter_map(|bent_rad| solve(leg, target, bent_rad))
+        .collect();
+    let ahead = |joints: &Vector6<f64>| leg_pose(leg, joints).origins_m[KNEE].x;
+    let sound = solutions.iter().filter(|own| check(leg, own, t_s).is_ok());
+    // Of two sides to bend to, people and their robots bend the knee forwards.
+    if let Some(joints) = sound.max_by(|a, b| ahead(a).total_cmp(&ahead(b))) {
+        return Ok(*joints);
+    }
+    // What keeps the leg from the nearest solution, if there is one.
+    if let Some(Err(error)) = tried {
+        return Err(error);
+    }
+    match solutions.first() {
+        Some(joints) => check(leg, joints, t_s).map(|()| *joints),
+        None => Err(no_pose(leg, foot, target, t_s)),
+    }
+}
+
+/// Poses with a bent knee, to either side as far as its range allows: the joints that turn about the same axis share
+/// the bend, so that the foot stays about level.
+fn bent(leg: &Leg) -> Vec<Vector6<f64>> {
+    let axes = leg_pose(leg, &Vector6::zeros()).axes;
+    let alike: Vec<f64> = axes.iter().map(|axis| axis.dot(&axes[KNEE])).collect();
+    let knee = &leg.joints[KNEE];
+    let bends = BENDS_RAD.iter().flat_map(|bend_rad| [*bend_rad, -bend_rad]);
+    let possible = bends.filter(|bend| (knee.q_min_rad..=knee.q_max_rad).contains(bend));
+    let pose = |bend_rad: f64| {
+        let others = alike.iter().enumerate();
+        let others = others.filter(|(joint, own)| *joint != KNEE && own.abs() > ALIKE);
+        let mut joints = Vector6::zeros();
+        joints[KNEE] = bend_rad;
+        for (joint, own) in others {
+            joints[joint] = -0.5 * bend_rad * own.signum();
+        }
+        joints
+    };
+    possible.map(pose).collect()
+}
+
 /// Newton's method on the six components of the pose error, in pelvis axes.
 fn solve(leg: &Leg, target: &Isometry3<f64>, start_rad: Vector6<f64>) -> Option<Vector6<f64>> {
     let mut joints_rad = start_rad;
@@ -119,15 +178,70 @@ fn solve(leg: &Leg, target: &Isometry3<f64>, start_rad: Vector6<f64>) -> Option<
     None
 }
 
-fn out_of_reach(leg: &Leg, foot: Foot, target: &Isometry3<f64>, t_s: f64) -> WalkError {
+/// Why no pose was found: the foothold is farther away than the leg reaches, or it is not.
+fn no_pose(leg: &Leg, foot: Foot, target: &Isometry3<f64>, t_s: f64) -> WalkError {
     let hip = leg.joints[0].placement.translation.vector;
-    let from_hip = |pose: &Isometry3<f64>| (pose.translation.vector - hip).norm();
-    WalkError::OutOfReach {
-        t_s,
-        foot,
-        distance_m: from_hip(target),
-        reach_m: from_hip(&leg_pose(leg, &Vector6::zeros()).ankle()),
+    let distance_m = (target.translation.vector - hip).norm();
+    let reach_m = reach_m(leg);
+    match distance_m > reach_m {
+        true => WalkError::OutOfReach {
+            t_s,
+            foot,
+            distance_m,
+            reach_m,
+        },
+        false => WalkError::NoPose {
+            t_s,
+            foot,
+            distance_m,
+            found_m: distance_m * share_found(leg, target, hip),
+        },
     }
+}
+
+/// The largest share of the way from the hip to the ankle for which a pose is found, the foot turned as at its end.
+fn share_found(leg: &Leg, target: &Isometry3<f64>, hip_m: Vector3<f64>) -> f64 {
+    let way_m = target.translation.vector - hip_m;
+    let mut starts = bent(leg);
+    let mut found = 0.0;
+    for percent in 1..100 {
+        let share = f64::from(percent) / 100.0;
+        let nearer = Isometry3::from_parts((hip_m + way_m * share).into(), target.rotation);
+        let poses = starts
+            .iter()
+            .filter_map(|start_rad| solve(leg, &nearer, *start_rad));
+        let poses: Vec<Vector6<f64>> = poses.collect();
+        if !poses.is_empty() {
+            found = share;
+            starts = poses;
+        }
+    }
+    found
+}
+
+/// How far from the hip the joints of a leg can put its ankle, m. The square of the distance is a sine of each joint's
+/// angle, so that the best angle of one joint is known; they are improved in turn.
+fn reach_m(leg: &Leg) -> f64 {
+    let hip = leg.joints[0].placement.translation.vector;
+    let distance = |joints: &Vector6<f64>| (leg_pose(leg, joints).ankle_m() - hip).norm();
+    let mut joints = Vector6::zeros();
+    for joint in (0..SWEEPS).flat_map(|_| 0..LEG_JOINTS) {
+        let square = |angle_rad: f64| {
+            let mut tried = joints;
+            tried[joint] = angle_rad;
+            distance(&tried).powi(2)
+        };
+        let (at_zero, at_quarter, at_half) = (square(0.0), square(FRAC_PI_2), square(PI));
+        let middle = f64::midpoint(at_zero, at_half);
+        let best_rad = (at_quarter - middle).atan2(at_zero - middle);
+        let (low, high) = (leg.joints[joint].q_min_rad, leg.joints[joint].q_max_rad);
+        let within = [best_rad.clamp(low, high), low, high];
+        let best = within
+            .into_iter()
+            .max_by(|a, b| square(*a).total_cmp(&square(*b)));
+        joints[joint] = best.unwrap_or(best_rad);
+    }
+    distance(&joints)
 }
 
 fn check(leg: &Leg, joints_rad: &Vector6<f64>, t_s: f64) -> Result<(), WalkError> {

@@ -20,13 +20,13 @@ pub fn devices(adapters: &[AdapterReport], simd: Simd) -> String {
         title: format!("--backend auto takes {auto}"),
         sections: none
             .into_iter()
-            .chain(adapters.iter().map(adapter))
+            .chain(adapters.iter().enumerate().map(adapter))
             .collect(),
         ..Document::default()
     })
 }
 
-fn adapter(report: &AdapterReport) -> Section {
+fn adapter((index, report): (usize, &AdapterReport)) -> Section {
     let adapter = &report.adapter;
     let kind = format!("{:?}", adapter.kind).to_lowercase();
     let [least, most] = report.subgroup_sizes;
@@ -48,5 +48,5 @@ fn adapter(report: &AdapterReport) -> Section {
         )),
         Block::text(&report.reason),
     ];
-    Section::new(&adapter.name, blocks)
+    Section::new(format!("{index}: {}", adapter.name), blocks)
 }

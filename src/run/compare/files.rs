@@ -4,6 +4,7 @@ use super::{CompareError, RunComparison};
 use crate::results::{comparison_table, fairness_table};
 use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
+use crate::run::labels::Labels;
 use crate::run::pretty;
 use std::path::Path;
 
@@ -42,7 +43,8 @@ pub fn write(
         fairness_table(&found.terms),
     ];
     for (name, table) in TABLES.iter().zip(&tables) {
-        out.write_parquet(&format!("{name}.parquet"), table)?;
+        let labels = Labels::new(&found.campaign, name);
+        out.write_parquet(&format!("{name}.parquet"), table, &labels)?;
         out.write_csv(&format!("{name}.csv"), table)?;
     }
     for (name, page) in PAGES.iter().zip(pages) {

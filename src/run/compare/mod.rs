@@ -113,7 +113,7 @@ struct ReadRun {
 
 impl ReadRun {
     fn read(path: &Path) -> Result<Self, CompareError> {
-        let manifest = Manifest::read(path)?;
+        let manifest = Manifest::read_verified(path)?;
         let campaign = manifest.campaign()?;
         let gains = GainSet::read(&campaign, &path.join("gains.json"))?;
         let table = |name: &str| {

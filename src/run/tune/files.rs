@@ -8,6 +8,7 @@ use crate::results::Measured;
 use crate::results::table::Table;
 use crate::run::directory::{OutputDir, OutputFile};
 use crate::run::error::OutputError;
+use crate::run::labels::Labels;
 use crate::run::manifest::{GIT_REVISION, campaign_hash};
 use crate::run::pretty;
 use serde::{Deserialize, Serialize};
@@ -100,7 +101,7 @@ pub fn write(tuning: &Tuning, pages: &[String; 2], out: &OutputDir) -> Result<()
     OutputFile::claim(&out.path().join(FINDINGS))?.remove()?;
     let [parquet, csv] = TABLES;
     let table = table(tuning);
-    out.write_parquet(parquet, &table)?;
+    out.write_parquet(parquet, &table, &Labels::new(&tuning.campaign, "tune"))?;
     out.write_csv(csv, &table)?;
     out.write(GAINS, &pretty(&gains(tuning)?)?)?;
     for (name, page) in PAGES.into_iter().zip(pages) {

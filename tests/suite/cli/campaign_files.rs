@@ -79,11 +79,15 @@ kind = "sine"     => kind = 3            :: integer `3`, expected one of `sine`,
 kappa =           => kappa = true #      :: kappa = true ~ ^^^^ ~ a number, a list with one value per channel, or a distribution such as
 max_error = 1.5   => max_error = "big"   :: "big" ~ expected a number, or a list with one number per channel
 max_error = 1.5   => max_error = [1.0, "b"] :: column 19 ~ "b" ~ expected a number
-channels = "one"  => channels = 3        :: channels = 3 ~ a list of channel numbers from 1 such as [1, 2]
-channels = "one"  => channels = ["z"]    :: fault[0].channels (line 55) = ["z"]: "all", "one", or a list of different channel numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw; give such a list
+channels = "one"  => channels = 3        :: channels = 3 ~ a list of channels such as ["x", "yaw"] or [1, 6]
+channels = "one"  => channels = ["w"]    :: fault[0].channels[0] (line 55) = "w": the channels are x, y, z, roll, pitch, yaw; name one of them
+channels = "one"  => channels = ["x", "pich"] :: fault[0].channels[1] (line 55) = "pich" ~ did you mean "pitch"?
+channels = "one"  => channels = ["x", "x"]    :: fault[0].channels[1] (line 55) = "x": this channel is in the list already; name it once
+channels = "one"  => channels = ["x", 2]      :: fault[0].channels (line 55) = ["x", 2] ~ a list of different channels, names or numbers from 1 to 6: 1 x, 2 y
+channels = "one"  => channels = []            :: fault[0].channels (line 55) = [] ~ give such a list
 channels = "one"  => channels = [-1, 1]  :: fault[0].channels (line 55) = [-1, 1] ~ numbers from 1 to 6
 channels = "one"  => channels = [1, 2.5] :: fault[0].channels (line 55) = [1, 2.5] ~ numbers from 1 to 6
-channels = "one"  => channels = [[1]]    :: line 55, column 13 ~ expected a channel's number, from 1
+channels = "one"  => channels = [[1]]    :: line 55, column 13 ~ expected a channel's name or number, from 1
 probability = 0.25 => probability = { uniform = [0, 1] } :: probability ~ a table, expected a number
 "full"            => "full"\ninertia_kg_m2 = [1.0, 1.0] :: inertia_kg_m2 ~ expected a list of length 3
 "full"            => "full"\ninertia_kg_m2 = [1.0, 1.0, 1.0, 9.0] :: inertia_kg_m2 ~ 4 ~ expected a list of length 3
@@ -124,8 +128,8 @@ step_s = 0.002    => step_s = 1e-7       :: time.duration_s (line 8) = 6.0 ~ 838
 settle_s = 2.0    => settle_s = -1.0     :: time.settle_s (line 10) = -1.0: must not be negative
 onset_s = { uniform = [2.5, 4.0] } => onset_s = -1 :: fault[0].onset_s (line 56) = -1.0: must not be negative
 max_error = 1.5   => max_error = 0.0     :: verdict.max_error (line 69) = 0.0: must be positive
-channels = "one"  => channels = [0, 7]   :: fault[0].channels (line 55) = [0, 7] ~ different channel numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw
-channels = "one"  => channels = [2, 2]   :: fault[0].channels (line 55) = [2, 2] ~ different channel numbers
+channels = "one"  => channels = [0, 7]   :: fault[0].channels (line 55) = [0, 7] ~ different channels, names or numbers from 1 to 6: 1 x, 2 y, 3 z, 4 roll, 5 pitch, 6 yaw
+channels = "one"  => channels = [2, 2]   :: fault[0].channels (line 55) = [2, 2] ~ different channels
 channels = "one"  => channels = "two"    :: fault[0].channels (line 55) = "two" ~ "all", "one"
 name = "smoke"    => name = "../smoke"   :: name (line 1) = "../smoke": a name consists of letters, digits, '-' and '_'; rename it
 "uav-paper"       => "uav-paper"\nposition.rho = -0.1 :: synthesis.position.rho (line 36) = -0.1: must be above 0
@@ -292,12 +296,18 @@ fn a_list_of_fixed_length_takes_neither_more_nor_fewer_values() {
     let preset = "\"uav-paper\"";
     let synthesis = |key: &str| format!("{preset}\\nposition.{key} = LIST");
     let scale = "mass_scale = { uniform = [0.8, 1.2] }";
-    let cases: [(&str, String, &str, &[&str]); 8] = [
+    let cases: [(&str, String, &str, &[&str]); 9] = [
         (
             "\"full\"",
             "\"full\"\\ninertia_kg_m2 = LIST".into(),
             "inertia_kg_m2",
             &["1.25", "1.25", "2.2"],
+        ),
+        (
+            "\"full\"",
+            "\"full\"\\nstanding_rad = LIST".into(),
+            "standing_rad",
+            &["0.1"; 12],
         ),
         (
             scale,

@@ -194,12 +194,16 @@ fn check_and_synthesize_tell_of_every_group() {
         "--set",
         "group.1.synthesis.gains=gains.json",
     ];
-    succeeds(&place, &with(&["run", "c.toml", "--out", "own"]));
+    succeeds(&place, &with(&["run", "c.toml", "--out", "own", "--csv"]));
     succeeds(
         &place,
-        &[&with(&["run", "c.toml", "--out", "named"])[..], &named].concat(),
+        &[
+            &with(&["run", "c.toml", "--out", "named", "--csv"])[..],
+            &named,
+        ]
+        .concat(),
     );
-    assert!(place.read_bytes("own/channels.parquet") == place.read_bytes("named/channels.parquet"));
+    assert!(place.read_bytes("own/channels.csv") == place.read_bytes("named/channels.csv"));
 }
 
 #[test]

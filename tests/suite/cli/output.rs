@@ -9,13 +9,15 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 18] = [
+const FILES: [&str; 20] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
+    "conditions.parquet",
     "episodes.parquet",
     "fairness.csv",
     "fairness.parquet",
+    "faults.parquet",
     "flights.csv",
     "flights.parquet",
     "gains.json",
@@ -50,7 +52,12 @@ fn a_run_writes_its_files_and_no_others() {
     // Without --out, under the campaign's name; folders are made as needed.
     place.succeeds(&["run", "c.toml", "--csv"]);
     let mut more: Vec<&str> = FILES.to_vec();
-    more.extend(["episodes.csv", "channels.csv"]);
+    more.extend([
+        "episodes.csv",
+        "channels.csv",
+        "faults.csv",
+        "conditions.csv",
+    ]);
     more.sort_unstable();
     assert_eq!(names(&place.path("reports/smoke")), more);
     assert_eq!(
@@ -175,7 +182,7 @@ fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
     let place = Place::smoke(&[]);
     place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
     place.succeeds(&["replay", "out", "--episode", "0"]);
-    assert_eq!(names(&place.path("out")).len(), FILES.len() + 5);
+    assert_eq!(names(&place.path("out")).len(), FILES.len() + 7);
     place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "4"]);
     assert_eq!(names(&place.path("out")), FILES);
 }

@@ -29,11 +29,12 @@ fn edited() -> String {
 #[test]
 fn a_run_with_settings_is_that_of_the_edited_file_and_remembers_them() {
     let place = Place::smoke(&[]);
-    place.succeeds(&with(&["run", "c.toml", "--out", "set"]));
+    place.succeeds(&with(&["run", "c.toml", "--out", "set", "--csv"]));
     place.write("edited.toml", edited());
-    place.succeeds(&["run", "edited.toml", "--out", "edited"]);
-    place.succeeds(&["run", "c.toml", "--out", "plain"]);
-    let bytes = |run: &str, table: &str| place.read_bytes(&format!("{run}/{table}.parquet"));
+    place.succeeds(&["run", "edited.toml", "--out", "edited", "--csv"]);
+    place.succeeds(&["run", "c.toml", "--out", "plain", "--csv"]);
+    // A Parquet file says from which campaign it is, and they are two.
+    let bytes = |run: &str, table: &str| place.read_bytes(&format!("{run}/{table}.csv"));
     // Without strata nothing is screened.
     for table in RUN_TABLES.iter().filter(|table| table.name != "screening") {
         let name = table.name;

@@ -123,7 +123,7 @@ fn a_replay_draws_every_channel_and_every_controller_and_shades_the_faults_it_me
     let drawn = panels(&page);
     let of_channel = |name: &str| -> Vec<&str> {
         let own = drawn.iter().filter(|panel| {
-            panel.contains(&format!("aria-label=\"{name}: ")) && panel.contains(" over t, s")
+            panel.contains(&format!("aria-label=\"{name}: ")) && panel.contains(" over time, s")
         });
         own.copied().collect()
     };
@@ -190,7 +190,10 @@ fn the_curves_are_the_numbers_simulated() {
     let agent: usize = heading[..1].parse().unwrap();
     let errors = panels(heading);
     let z = errors[2];
-    assert!(z.contains("aria-label=\"z: e, m over t, s\""), "{z:.200}");
+    assert!(
+        z.contains("aria-label=\"z: e, m over time, s\""),
+        "{z:.200}"
+    );
     let of_asked = |k: usize| simulated.snapshots[k].agents[agent][2].e;
     agrees(z, "var(--series-0)", &simulated, of_asked);
     for (other, colour) in simulated

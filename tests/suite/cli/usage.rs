@@ -130,7 +130,7 @@ fn a_replay_of_what_was_not_simulated_is_refused() {
     std::fs::remove_file(place.path("out/gains.json")).unwrap();
     replay(
         "out --episode 0",
-        &["error: out/gains.json: cannot be read"],
+        &["error: out/gains.json: is not the file that the run wrote"],
     );
     let manifest = place.read("out/manifest.json");
     place.write("out/manifest.json", &manifest[..200]);

@@ -23,7 +23,7 @@ fn of_channels(
     let text = |name: &str| frame.column(name).unwrap().str().unwrap().clone();
     let (controllers, names) = (text("controller"), text("channel"));
     let values = frame.column(column).unwrap().f64().unwrap().clone();
-    let episodes = frame.column("episode").unwrap().u64().unwrap().clone();
+    let episodes = frame.column("episode").unwrap().i64().unwrap().clone();
     let mut all: Vec<Vec<f64>> = Vec::new();
     for row in 0..frame.height() {
         let wanted = controllers.get(row) == Some(controller)

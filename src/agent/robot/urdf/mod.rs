@@ -1,6 +1,7 @@
 //! A robot from a URDF: two legs of six revolute joints on a pelvis. Every other joint is fixed, and its link is part
 //! of the one that carries it.
 
+mod legs;
 mod syntax;
 mod tree;
 
@@ -10,6 +11,7 @@ use super::kinematics::{by_leg, leg_pose};
 use super::structure::{Body, Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot};
 use nalgebra::{Isometry3, Vector3, Vector6};
 use std::path::Path;
+use syntax::{JointKind, Urdf};
 use tree::{Moving, Tree};
 
 const NAMES: Names = Names {
@@ -27,6 +29,9 @@ const NAMES: Names = Names {
     damping: "dynamics damping",
 };
 
+/// Inertia of a rotor as seen from its joint where nobody says it, kg m^2.
+const DEFAULT_ARMATURE_KG_M2: f64 = 0.01;
+
 /// What a URDF does not say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfOptions {
@@ -36,8 +41,8 @@ pub struct UrdfOptions {
     pub left_hip: Option<String>,
     /// Moving joints outside the legs, held at zero.
     pub locked: Vec<String>,
-    /// Inertia of each joint's rotor as seen from the joint, kg m^2.
-    pub armature_kg_m2: [f64; JOINTS],
+    /// Inertia of each joint's rotor as seen from the joint, kg m^2 (default: that of the file, else 0.01).
+    pub armature_kg_m2: Option<[f64; JOINTS]>,
     /// Left and right foot (default: both frames in the last link's origin, the sole parallel to the pelvis at q = 0).
     pub feet: Option<[Foot; 2]>,
     /// Standing pose, rad (default: zero, or the nearest angle that a joint can reach).
@@ -58,7 +63,7 @@ impl Default for UrdfOptions {
             pelvis: None,
             left_hip: None,
             locked: Vec::new(),
-            armature_kg_m2: [0.01; JOINTS],
+            armature_kg_m2: None,
             feet: None,
             standing_rad: None,
             base_height_m: None,
@@ -87,11 +92,28 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     let check = Check { path, names };
     check.finite("gravity_m_s2", &options.gravity_m_s2.as_slice())?;
     let tree = Tree::new(&check, &urdf, &options.locked)?;
-    let pelvis = tree.pelvis(options.pelvis.as_deref())?;
+    let mut notes = Vec::new();
+    let mut locked = options.locked.clone();
+    let mut pelvis = options.pelvis.clone();
+    // Arms, a waist, a head: what is no leg is held still.
+    if moves_more_than_legs(&tree, pelvis.as_deref())?
+        && let Some(found) = legs::find(&tree, &urdf, pelvis.as_deref())?
+    {
+        let own = found.locked.iter().filter(|name| !locked.contains(name));
+        notes.push(legs::held(&own.cloned().collect::<Vec<_>>()));
+        locked = found.locked;
+        pelvis = Some(found.pelvis);
+    }
+    let tree = Tree::new(&check, &urdf, &locked)?;
+    let pelvis = tree.pelvis(pelvis.as_deref())?;
     let rigid = tree.rigid(pelvis)?;
-    let [left, right] = hips(&check, &tree, &rigid.moving, options)?;
+    let [left, right] = hips(&check, &tree, &rigid.moving, options, &mut notes)?;
+    notes.extend(assumed(&urdf, options));
     let base = tree.body(pelvis, &rigid)?;
-    let [left_armature, right_armature] = halves(&options.armature_kg_m2);
+    let [left_armature, right_armature] = match &options.armature_kg_m2 {
+        Some(all) => halves(all).map(Some),
+        None => [None; 2],
+    };
     let mut legs = [
         leg(&check, &tree, &left, left_armature)?,
         leg(&check, &tree, &right, right_armature)?,
@@ -104,9 +126,24 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     }
     let standing_rad = options.standing_rad.unwrap_or_else(|| at_rest(&legs));
     check.standing("standing_rad", &legs, &standing_rad)?;
-    let base_height_m = options
-        .base_height_m
-        .unwrap_or_else(|| height_m(&legs, &standing_rad));
+    if options.feet.is_none() && options.standing_rad.is_some() {
+        level_soles(&mut legs, &standing_rad);
+    }
+    let height_m = height_m(&legs, &standing_rad);
+    // A root frame on the ground (REP-120) is no pelvis: the link that carries the legs is.
+    let carrier = tree.carrier_of(&left.joint.name);
+    if options.pelvis.is_none() && height_m <= 0.0 && !tree.is_named(pelvis, &carrier) {
+        let options = UrdfOptions {
+            pelvis: Some(carrier.clone()),
+            ..options.clone()
+        };
+        let mut robot = parse(text, path, &options)?;
+        robot.notes.push(format!(
+            "the root frame lies on the ground; the pelvis is {carrier}, which carries the legs"
+        ));
+        return Ok(robot);
+    }
+    let base_height_m = options.base_height_m.unwrap_or(height_m);
     check.positive(
         "base_height_m",
         base_height_m,
@@ -121,6 +158,7 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
         base_height_m,
         standing_rad,
         legs,
+        notes,
     })
 }
 
@@ -130,6 +168,7 @@ fn hips<'a>(
     tree: &Tree<'a>,
     moving: &[Moving<'a>],
     options: &UrdfOptions,
+    notes: &mut Vec<String>,
 ) -> Result<[Moving<'a>; 2], RobotError> {
     let [one, other] = moving else {
         let names: Vec<&str> = moving.iter().map(|hip| hip.joint.name.as_str()).collect();
@@ -169,11 +208,56 @@ fn hips<'a>(
             ));
         }
     };
-    Ok(if one_is_left {
-        [*one, *other]
-    } else {
-        [*other, *one]
-    })
+    let [left, right] = match one_is_left {
+        true => [*one, *other],
+        false => [*other, *one],
+    };
+    let named = [left, right].map(|hip| legs::side_by_name(&hip.joint.name));
+    if options.left_hip.is_none() && named == [Some(false), Some(true)] {
+        notes.push(format!(
+            "the leg of {} is taken for the left one, for it begins at y > 0 of the pelvis, though its name says right: turn \
+             the frame of the pelvis, or name the other one as left_hip",
+            left.joint.name
+        ));
+    }
+    Ok([left, right])
+}
+
+/// Whether the pelvis moves more than two joints, or none of its limbs is a leg.
+fn moves_more_than_legs(tree: &Tree<'_>, pelvis: Option<&str>) -> Result<bool, RobotError> {
+    match tree.pelvis(pelvis) {
+        Ok(pelvis) => Ok(tree.rigid(pelvis)?.moving.len() != 2),
+        // Something that moves carries it.
+        Err(_) => Ok(true),
+    }
+}
+
+/// What is assumed of the joints of the legs where the file does not say it, or says what the model has not.
+fn assumed(urdf: &Urdf, options: &UrdfOptions) -> Vec<String> {
+    let mut notes = Vec::new();
+    let revolute = urdf
+        .joints
+        .iter()
+        .filter(|joint| joint.kind == JointKind::Revolute);
+    let said = revolute.clone().any(|joint| joint.armature.is_some());
+    if options.armature_kg_m2.is_none() && !said {
+        notes.push(format!(
+            "no joint says the inertia of its rotor (<dynamics armature>): {DEFAULT_ARMATURE_KG_M2} kg m^2 is assumed of each; \
+             agent.armature_kg_m2 gives another"
+        ));
+    }
+    let rubbing = revolute.filter(|joint| joint.friction != 0.0);
+    let rubbing: Vec<String> = rubbing
+        .map(|joint| format!("{} {} N m", joint.name, joint.friction))
+        .collect();
+    if !rubbing.is_empty() {
+        notes.push(format!(
+            "the model has no dry friction, that of the file is left out ({}); a [[disturbance]] of that size bounds what it \
+             can do",
+            rubbing.join(", ")
+        ));
+    }
+    notes
 }
 
 /// The leg that begins with a joint.
@@ -181,7 +265,7 @@ fn leg(
     check: &Check<'_>,
     tree: &Tree<'_>,
     hip: &Moving<'_>,
-    armature: &[f64; LEG_JOINTS],
+    armature: Option<&[f64; LEG_JOINTS]>,
 ) -> Result<Leg, RobotError> {
     let mut joints = Vec::with_capacity(LEG_JOINTS);
     let mut next = Some(*hip);
@@ -195,12 +279,14 @@ fn leg(
                 "make the others fixed or lock them",
             )
         };
-        let Some(armature) = armature.get(joints.len()) else {
+        if joints.len() == LEG_JOINTS {
             return Err(counted(
                 joints.len() + 1,
                 &format!("{name} is one too many"),
             ));
-        };
+        }
+        let armature = armature.map(|own| own[joints.len()]);
+        let armature = armature.or(moving.joint.armature);
         let child = tree.child(&moving);
         let rigid = tree.rigid(child)?;
         next = match rigid.moving[..] {
@@ -214,7 +300,7 @@ fn leg(
             }
         };
         let body = tree.body(child, &rigid)?;
-        joints.push(joint(check, tree, &moving, *armature, body)?);
+        joints.push(joint(check, tree, &moving, armature, body)?);
         if next.is_none() && joints.len() < LEG_JOINTS {
             return Err(counted(joints.len(), &format!("{name} is the last")));
         }
@@ -229,7 +315,7 @@ fn joint(
     check: &Check<'_>,
     tree: &Tree<'_>,
     moving: &Moving<'_>,
-    armature: f64,
+    armature: Option<f64>,
     body: Body,
 ) -> Result<Joint, RobotError> {
     let urdf = moving.joint;
@@ -238,25 +324,16 @@ fn joint(
         name: &urdf.name,
     };
     tree.revolute(urdf)?;
-    let dynamics = urdf.dynamics.clone().unwrap_or_default();
-    if dynamics.friction != 0.0 {
-        return Err(check.invalid(
-            place.key("dynamics friction"),
-            dynamics.friction,
-            "the model has no dry friction",
-            "set it to 0, or give the friction as a disturbance",
-        ));
-    }
     let raw = RawJoint {
-        xyz: *urdf.origin.xyz,
-        rpy: *urdf.origin.rpy,
-        axis: *urdf.axis.xyz,
+        xyz: urdf.origin.xyz,
+        rpy: urdf.origin.rpy,
+        axis: urdf.axis,
         q_min: urdf.limit.lower,
         q_max: urdf.limit.upper,
         rate_max: urdf.limit.velocity,
         torque_max: urdf.limit.effort,
-        armature,
-        damping: dynamics.damping,
+        armature: armature.unwrap_or(DEFAULT_ARMATURE_KG_M2),
+        damping: urdf.damping,
     };
     let joint = check.joint(place, &raw, body)?;
     Ok(Joint {
@@ -276,6 +353,14 @@ fn standing_on_its_sole(joints: [Joint; LEG_JOINTS]) -> Leg {
     let last = leg_pose(&leg, &Vector6::zeros()).link(LEG_JOINTS - 1);
     leg.foot.sole.rotation = last.rotation.inverse();
     leg
+}
+
+/// Turns the soles so that they are parallel to the pelvis in the standing pose.
+fn level_soles(legs: &mut [Leg; 2], standing_rad: &[f64; JOINTS]) {
+    for (leg, q_rad) in legs.iter_mut().zip(by_leg(standing_rad)) {
+        let last = leg_pose(leg, &q_rad).link(LEG_JOINTS - 1);
+        leg.foot.sole.rotation = last.rotation.inverse();
+    }
 }
 
 /// The pose nearest to zero that the joints can reach.

@@ -1,11 +1,11 @@
 //! The tree of links and joints of a URDF, and what of it is rigid.
 
+use super::syntax::{Joint, JointKind, Link, Urdf};
 use crate::agent::robot::check::{Check, Place, tensor};
 use crate::agent::robot::error::RobotError;
 use crate::agent::robot::structure::Body;
 use nalgebra::Isometry3;
 use std::collections::HashMap;
-use urdf_rs::{Joint, JointType, Link, Robot};
 
 /// A URDF whose joints connect its links to one tree.
 pub(super) struct Tree<'a> {
@@ -42,7 +42,7 @@ impl<'a> Tree<'a> {
     /// Refuses links and joints that are no tree.
     pub(super) fn new(
         check: &'a Check<'a>,
-        urdf: &'a Robot,
+        urdf: &'a Urdf,
         locked: &'a [String],
     ) -> Result<Self, RobotError> {
         if urdf.links.is_empty() {
@@ -84,12 +84,12 @@ impl<'a> Tree<'a> {
             root: 0,
         };
         for (j, joint) in urdf.joints.iter().enumerate() {
-            let parent = tree.link(&joint.name, "parent link", &joint.parent.link)?;
-            let child = tree.link(&joint.name, "child link", &joint.child.link)?;
+            let parent = tree.link(&joint.name, "parent link", &joint.parent)?;
+            let child = tree.link(&joint.name, "child link", &joint.child)?;
             if let Some(first) = tree.carrier[child] {
                 return Err(check.invalid(
                     format!("joint child link ({})", joint.name),
-                    format!("{:?}", joint.child.link),
+                    format!("{:?}", joint.child),
                     format!("this link hangs on {:?} already", tree.joints[first].name),
                     "let one joint carry it",
                 ));
@@ -138,7 +138,7 @@ impl<'a> Tree<'a> {
             let floating = self
                 .joints
                 .iter()
-                .position(|joint| joint.joint_type == JointType::Floating);
+                .position(|joint| joint.kind == JointKind::Floating);
             return Ok(floating.map_or(self.root, |joint| self.child_of(joint)));
         };
         let pelvis = self.index.get(name).copied().ok_or_else(|| {
@@ -151,18 +151,18 @@ impl<'a> Tree<'a> {
         })?;
         let mut highest = pelvis;
         while let Some(joint) = self.carrier[highest].map(|joint| &self.joints[joint]) {
-            if joint.joint_type == JointType::Floating {
+            if joint.kind == JointKind::Floating {
                 break;
             }
             if !self.is_fixed(joint) {
                 return Err(self.check.invalid(
                     format!("joint above the pelvis ({})", joint.name),
-                    type_of(joint),
+                    joint.kind.word(),
                     "the pelvis carries the upper body, nothing carries the pelvis",
                     "lock this joint, or make it floating if the ground is above it",
                 ));
             }
-            highest = self.index[joint.parent.link.as_str()];
+            highest = self.index[joint.parent.as_str()];
         }
         Ok(pelvis)
     }
@@ -199,11 +199,45 @@ impl<'a> Tree<'a> {
                 && self.is_fixed(&self.joints[j])
             {
                 let frame = frame * self.origin(&self.joints[j])?.inverse();
-                let above = self.index[self.joints[j].parent.link.as_str()];
+                let above = self.index[self.joints[j].parent.as_str()];
                 todo.push((above, frame, Some(j)));
             }
         }
         Ok(rigid)
+    }
+
+    /// A link of each group of rigid links.
+    pub(super) fn carriers(&self) -> Vec<usize> {
+        let is_first = |link: &usize| match self.carrier[*link] {
+            Some(joint) => !self.is_fixed(&self.joints[joint]),
+            None => true,
+        };
+        (0..self.links.len()).filter(is_first).collect()
+    }
+
+    /// Whether a link of this name is fixed to a link, over however many others.
+    pub(super) fn are_rigid(&self, link: usize, name: &str) -> bool {
+        let Some(mut other) = self.index.get(name).copied() else {
+            return false;
+        };
+        while let Some(joint) = self.carrier[other].map(|joint| &self.joints[joint]) {
+            if !self.is_fixed(joint) {
+                break;
+            }
+            other = self.index[joint.parent.as_str()];
+        }
+        other == link
+    }
+
+    /// Whether a link has this name.
+    pub(super) fn is_named(&self, link: usize, name: &str) -> bool {
+        self.name(link) == name
+    }
+
+    /// The link that carries a joint.
+    pub(super) fn carrier_of(&self, joint: &str) -> String {
+        let joint = self.joints.iter().find(|own| own.name == joint);
+        joint.map_or(String::new(), |joint| joint.parent.clone())
     }
 
     /// The body of rigid links; a link that moves needs one.
@@ -232,7 +266,7 @@ impl<'a> Tree<'a> {
 
     /// The link that a moving joint moves.
     pub(super) fn child(&self, moving: &Moving<'_>) -> usize {
-        self.index[moving.joint.child.link.as_str()]
+        self.index[moving.joint.child.as_str()]
     }
 
     /// Refuses joints of a leg that are not revolute, or follow another one.
@@ -244,17 +278,17 @@ impl<'a> Tree<'a> {
         if let Some(mimic) = &joint.mimic {
             return Err(self.check.invalid(
                 place.key("mimic"),
-                format!("{:?}", mimic.joint),
+                format!("{mimic:?}"),
                 "every joint of a leg has its own actuator",
                 "remove the mimic, or lock the joint",
             ));
         }
-        if joint.joint_type == JointType::Revolute {
+        if joint.kind == JointKind::Revolute {
             return Ok(());
         }
         Err(self.check.invalid(
             place.key("type"),
-            type_of(joint),
+            joint.kind.word(),
             "the joints of a leg are revolute",
             "make it revolute with limits, or fixed",
         ))
@@ -262,24 +296,25 @@ impl<'a> Tree<'a> {
 
     /// A link's own mass; none for a bare frame. The inertia of a point or a line will do where other links add to it.
     fn own_body(&self, link: usize) -> Result<Option<Body>, RobotError> {
-        let inertial = &self.links[link].inertial;
+        let Some(inertial) = &self.links[link].inertial else {
+            return Ok(None);
+        };
         let place = Place {
             prefix: "link ",
             name: self.name(link),
         };
-        let raw = &inertial.inertia;
-        let six = [raw.ixx, raw.ixy, raw.ixz, raw.iyy, raw.iyz, raw.izz];
-        if inertial.mass.value == 0.0 && six.iter().all(|entry| *entry == 0.0) {
+        let six = inertial.inertia;
+        if inertial.mass == 0.0 && six.iter().all(|entry| *entry == 0.0) {
             return Ok(None);
         }
         let names = self.check.names;
         let origin = self.check.pose(
             &place.key(names.com),
-            *inertial.origin.xyz,
+            inertial.origin.xyz,
             &place.key("inertial origin rpy"),
-            *inertial.origin.rpy,
+            inertial.origin.rpy,
         )?;
-        let (mass_kg, tensor) = (inertial.mass.value, tensor(six));
+        let (mass_kg, tensor) = (inertial.mass, tensor(six));
         let com_m = origin.translation.vector;
         self.check.realizable(place, mass_kg, com_m, &tensor)?;
         let rotation = origin.rotation.to_rotation_matrix();
@@ -298,11 +333,11 @@ impl<'a> Tree<'a> {
         let names = self.check.names;
         let (xyz, rpy) = (place.key(names.xyz), place.key(names.rpy));
         self.check
-            .pose(&xyz, *joint.origin.xyz, &rpy, *joint.origin.rpy)
+            .pose(&xyz, joint.origin.xyz, &rpy, joint.origin.rpy)
     }
 
     fn is_fixed(&self, joint: &Joint) -> bool {
-        joint.joint_type == JointType::Fixed || self.locked.contains(&joint.name)
+        joint.kind == JointKind::Fixed || self.locked.contains(&joint.name)
     }
 
     fn link(&self, joint: &str, what: &str, name: &str) -> Result<usize, RobotError> {
@@ -317,15 +352,10 @@ impl<'a> Tree<'a> {
     }
 
     fn child_of(&self, joint: usize) -> usize {
-        self.index[self.joints[joint].child.link.as_str()]
+        self.index[self.joints[joint].child.as_str()]
     }
 
     fn name(&self, link: usize) -> &'a str {
         &self.links[link].name
     }
-}
-
-/// A joint's type as a URDF writes it.
-fn type_of(joint: &Joint) -> String {
-    format!("{:?}", joint.joint_type).to_lowercase()
 }

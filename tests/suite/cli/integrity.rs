@@ -1,0 +1,106 @@
+//! A run whose files were changed is not read, and one whose campaign names other files is not replaced.
+
+use super::Place;
+use crate::common::repository;
+use std::fs;
+
+#[test]
+fn a_changed_or_missing_file_is_named_and_nothing_is_made_of_it() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    place.succeeds(&["run", "c.toml", "--out", "same"]);
+    let commands = [
+        vec!["report", "out"],
+        vec!["replay", "out", "--episode", "0"],
+        vec!["compare", "same", "out"],
+    ];
+    let whole = place.read_bytes("out/channels.parquet");
+    // A single bit, in the middle of the file: Parquet would read another number there, or fall over it.
+    let mut flipped = whole.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 1;
+    let mut longer = whole.clone();
+    longer.push(0);
+    for (content, words) in [
+        (Some(flipped), "its content was changed"),
+        (Some(longer), "bytes, the run wrote "),
+        (None, "No such file"),
+    ] {
+        let path = place.path("out/channels.parquet");
+        match content {
+            Some(content) => fs::write(&path, content).unwrap(),
+            None => fs::remove_file(&path).unwrap(),
+        }
+        for command in &commands {
+            let said = place.program(command);
+            assert_eq!(said.code, 2, "{command:?}: {}", said.stderr);
+            for word in [
+                "error: out/channels.parquet: is not the file that the run wrote (",
+                words,
+            ] {
+                assert!(said.stderr.contains(word), "{command:?}: {}", said.stderr);
+            }
+        }
+    }
+    place.write("out/channels.parquet", whole);
+    for command in &commands {
+        assert_eq!(place.program(command).code, 0, "{command:?}");
+    }
+    // What is made of the tables may be changed: CSV files are for other programs.
+    place.write("out/summary.csv", "mine");
+    place.succeeds(&["report", "out"]);
+}
+
+#[test]
+fn a_run_with_another_robot_or_other_gains_does_not_replace_the_earlier_one() {
+    let robot = fs::read_to_string(repository("campaigns/robots/g1_12dof.toml")).unwrap();
+    let walk = fs::read_to_string(repository("campaigns/biped-ground-reaction.toml")).unwrap();
+    let walk = walk.replace("[agent]", "[agent]\nrobot = \"robot.toml\"");
+    let place = Place::with(&walk);
+    place.write("robot.toml", &robot);
+    let run = [
+        "run",
+        "c.toml",
+        "--episodes",
+        "2",
+        "--out",
+        "out",
+        "--quiet",
+    ];
+    assert_eq!(place.program(&run).code, 0);
+    assert_eq!(place.program(&run).code, 0);
+    // A comment is another file: what it says is nobody's to judge but its writer's.
+    place.write("robot.toml", format!("{robot}\n# heavier\n"));
+    let refused = place.program(&run);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains(
+            "out: holds a run of this campaign with another robot.toml; give another directory"
+        ),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(
+        place.program(&[&run[..], &["--overwrite"]].concat()).code,
+        0
+    );
+
+    let gains = fs::read_to_string(repository("tests/golden/gains-uav-paper.json")).unwrap();
+    let named = "[synthesis.named.own]\ngains = \"own.json\"\ncontroller = \"pid\"\n[verdict]";
+    let place = Place::smoke(&[
+        ("[verdict]", named),
+        ("[\"ftc\", \"pid\", \"pid-tuned\"]", "[\"ftc\", \"own\"]"),
+    ]);
+    place.write("own.json", &gains);
+    let run = ["run", "c.toml", "--out", "out", "--quiet"];
+    assert_eq!(place.program(&run).code, 0);
+    place.write("own.json", format!("{gains}\n"));
+    let refused = place.program(&run);
+    assert!(
+        refused
+            .stderr
+            .contains("a run of this campaign with another own.json"),
+        "{}",
+        refused.stderr
+    );
+}
