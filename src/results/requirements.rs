@@ -128,7 +128,7 @@ pub fn can_be_judged(campaign: &Campaign, gains: &[GainSet]) -> Result<(), Campa
             if known.is_none() {
                 return Err(campaign.invalid(
                     &format!("require[{}].measure", requirement.place),
-                    &format!("{:?}", requirement.measure.to_string()),
+                    format!("{:?}", requirement.measure.to_string()),
                     &format!("this is not known of {name:?}"),
                     "name a controller that has it (certified_rho: one that estimates the faults), or remove the [[require]]",
                 ));
@@ -297,6 +297,7 @@ impl Judge<'_> {
                 true => smallest,
                 false => value,
             });
+            #[expect(clippy::float_cmp, reason = "two zeros or infinities are alike")]
             match compared {
                 Compared::RatioTo(_) if own == other => 1.0,
                 Compared::RatioTo(_) => own / other,

@@ -40,7 +40,7 @@ pub(super) fn scores_of_run(
                     let number = group.first_fault + fault;
                     let column = format!("fault{number}_occurs");
                     let mut agents = agent_row..agent_row + group.team;
-                    let occurs = agents.any(|row| episodes.real(row, &column) == 1.0);
+                    let occurs = agents.any(|row| episodes.is_whole(row, &column, 1));
                     scores.fault_occurs[number][episode] |= occurs;
                 }
                 agent_row += group.team;
@@ -130,9 +130,9 @@ impl Rows<'_> {
     ) -> Result<(), String> {
         let (episode, controller) = self.key;
         let agent = self.group.first_agent + place;
-        let expected = table.real(row, "episode") == episode as f64
+        let expected = table.is_whole(row, "episode", episode)
             && table.text(row, "controller") == controller
-            && table.real(row, "agent") == agent as f64;
+            && table.is_whole(row, "agent", agent);
         if expected {
             return Ok(());
         }

@@ -82,6 +82,13 @@ impl TableReader {
         }
     }
 
+    /// Whether a number of a row is this whole one.
+    #[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
+    #[expect(clippy::float_cmp, reason = "whole numbers are exact")]
+    pub(crate) fn is_whole(&self, row: usize, name: &str, value: usize) -> bool {
+        self.real(row, name) == value as f64
+    }
+
     /// A text of a row.
     pub(crate) fn text(&self, row: usize, name: &str) -> &str {
         match self.columns.get(name) {

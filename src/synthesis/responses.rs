@@ -27,7 +27,8 @@ pub fn settling_s(gains: &ControllerGains) -> Option<f64> {
     while time_s < LONGEST_S {
         time_s += LOOK_S;
         state = &step * state;
-        if !(state[(1, 0)].abs() <= SETTLED) {
+        // A loop that diverges beyond numbers has not settled.
+        if state[(1, 0)].abs() > SETTLED || state[(1, 0)].is_nan() {
             settled_s = time_s;
         }
     }

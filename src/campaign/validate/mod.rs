@@ -182,7 +182,7 @@ impl Check<'_> {
             Bounds::NonNegative,
         )?;
         let steps = (duration_s / step_s).round();
-        if !(steps <= MAX_STEPS) {
+        if steps > MAX_STEPS || steps.is_nan() {
             return Err(self.invalid(
                 "time.duration_s",
                 in_toml(duration_s),

@@ -71,6 +71,9 @@ pub(crate) fn section(data: &RunData) -> Option<Section> {
     Some(Section::new("On what terms", blocks.collect()))
 }
 
+/// The answer that a panel shows.
+type Picked = fn(&Response) -> f64;
+
 /// What the loops of a channel group make of sines: the errors that faults leave, and the commands that noise costs.
 fn figure(data: &RunData, of: &ChannelsOfCampaign) -> Figure {
     let omegas_rad_s: Vec<f64> = (0..=POINTS)
@@ -84,7 +87,7 @@ fn figure(data: &RunData, of: &ChannelsOfCampaign) -> Figure {
         })
         .collect();
     let band = disturbed(&data.campaign.groups()[of.group]);
-    let kinds: [(_, fn(&Response) -> f64); 3] = [
+    let kinds: [(_, Picked); 3] = [
         ("|e/f1|, s²", |own| own.from_actuator_fault),
         ("|e/f2|, s", |own| own.from_sensor_fault),
         ("|u/noise|", |own| own.from_noise),

@@ -275,6 +275,9 @@ fn pairs(a: &Campaign, b: &Campaign, asked: &Asked) -> Result<Vec<[usize; 2]>, C
     asked.pairs.iter().map(of_pair).collect()
 }
 
+/// How a number is compared to that of a controller.
+type ComparedTo = fn(String) -> Compared;
+
 /// The limits that were given, for every pair.
 fn demands(
     campaign: &Campaign,
@@ -282,15 +285,15 @@ fn demands(
     asked: &Asked,
 ) -> Result<Vec<Requirement>, CompareError> {
     let mut all = Vec::new();
-    let kinds: [(_, _, fn(String) -> Compared); 2] = [
+    let kinds: [(_, _, ComparedTo); 2] = [
         ("--ratio", &asked.ratios, Compared::RatioTo),
         ("--difference", &asked.differences, Compared::DifferenceTo),
     ];
     for [b, a] in pairs {
         let [b, a] = [b, a].map(|place| campaign.controllers[*place].clone());
-        for (option, texts, compared) in &kinds {
-            for text in *texts {
-                let found = campaign.demanded(&b, &compared(a.clone()), text);
+        for (option, texts, compared_to) in kinds {
+            for text in texts {
+                let found = campaign.demanded(&b, &compared_to(a.clone()), text);
                 all.extend(found.map_err(|error| CompareError::of_option(option, error))?);
             }
         }

@@ -20,7 +20,7 @@ fn utf_16_and_latin_1_are_told_apart_and_a_byte_order_mark_is_no_error() {
         2,
         &["c.toml", "it is UTF-16; save it as UTF-8"],
     );
-    let mut latin_1 = format!("# one\n# two\n# gr").into_bytes();
+    let mut latin_1 = b"# one\n# two\n# gr".to_vec();
     latin_1.extend([0xf6, 0xdf]);
     latin_1.extend(format!("e\n{text}").bytes());
     place.write("c.toml", latin_1);

@@ -109,7 +109,7 @@ fn ratios_and_differences_are_those_of_the_same_episodes() {
     let errors = |campaign: &Campaign| {
         let error = |controller: usize, episode: usize| {
             let size = 1e-3 * (1 + episode / 4) as f64;
-            let of_ftc = if episode % 4 == 0 { 0.5 } else { 2.0 };
+            let of_ftc = if episode.is_multiple_of(4) { 0.5 } else { 2.0 };
             (
                 Status::Ok,
                 if controller == 0 { of_ftc * size } else { size },

@@ -164,9 +164,10 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
             }
         })
         .map(|findings| findings.manifest.episodes)
+        .map_err(|error| error.to_string())
     };
     assert_eq!(run(None, u32::MAX).unwrap(), 24);
-    let said = run(Some(&gpu), 12).unwrap_err().to_string();
+    let said = run(Some(&gpu), 12).unwrap_err();
     assert!(said.contains("8 episodes were finished"), "{said}");
     assert!(said.contains("keeps the 24 of an earlier run"), "{said}");
     assert_eq!(Manifest::read(out.path()).unwrap().episodes, 24);
