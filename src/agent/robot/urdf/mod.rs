@@ -11,7 +11,7 @@ use super::kinematics::{by_leg, leg_pose};
 use super::structure::{Body, Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot};
 use nalgebra::{Isometry3, Vector3, Vector6};
 use std::path::Path;
-use syntax::{JointKind, Urdf};
+use syntax::Urdf;
 use tree::{Moving, Tree};
 
 const NAMES: Names = Names {
@@ -108,7 +108,6 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     let pelvis = tree.pelvis(pelvis.as_deref())?;
     let rigid = tree.rigid(pelvis)?;
     let [left, right] = hips(&check, &tree, &rigid.moving, options, &mut notes)?;
-    notes.extend(assumed(&urdf, options));
     let base = tree.body(pelvis, &rigid)?;
     let [left_armature, right_armature] = match &options.armature_kg_m2 {
         Some(all) => halves(all).map(Some),
@@ -118,6 +117,7 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
         leg(&check, &tree, &left, left_armature)?,
         leg(&check, &tree, &right, right_armature)?,
     ];
+    notes.extend(assumed(&urdf, &legs, options));
     if let Some(feet) = &options.feet {
         for (leg, foot) in legs.iter_mut().zip(feet) {
             check.foot("feet", foot)?;
@@ -233,22 +233,32 @@ fn moves_more_than_legs(tree: &Tree<'_>, pelvis: Option<&str>) -> Result<bool, R
 }
 
 /// What is assumed of the joints of the legs where the file does not say it, or says what the model has not.
-fn assumed(urdf: &Urdf, options: &UrdfOptions) -> Vec<String> {
+fn assumed(urdf: &Urdf, legs: &[Leg; 2], options: &UrdfOptions) -> Vec<String> {
     let mut notes = Vec::new();
-    let revolute = urdf
-        .joints
-        .iter()
-        .filter(|joint| joint.kind == JointKind::Revolute);
-    let said = revolute.clone().any(|joint| joint.armature.is_some());
-    if options.armature_kg_m2.is_none() && !said {
+    let in_legs = |joint: &&syntax::Joint| {
+        let mut own = legs.iter().flat_map(|leg| &leg.joints);
+        own.any(|own| own.name == joint.name)
+    };
+    let driven = urdf.joints.iter().filter(in_legs);
+    let driven = driven.filter_map(|joint| Some((&joint.name, joint.drive.as_ref().ok()?)));
+    let unsaid = driven.clone().filter(|(_, drive)| drive.armature.is_none());
+    let unsaid: Vec<&str> = unsaid.map(|(name, _)| name.as_str()).collect();
+    if options.armature_kg_m2.is_none() && !unsaid.is_empty() {
+        let which = match unsaid.len() {
+            JOINTS => "no joint of the legs says the inertia of its rotor".to_string(),
+            _ => format!(
+                "the inertia of the rotor is not said of {}",
+                unsaid.join(", ")
+            ),
+        };
         notes.push(format!(
-            "no joint says the inertia of its rotor (<dynamics armature>): {DEFAULT_ARMATURE_KG_M2} kg m^2 is assumed of each; \
+            "{which} (<dynamics armature>): {DEFAULT_ARMATURE_KG_M2} kg m^2 is assumed of each; \
              agent.armature_kg_m2 gives another"
         ));
     }
-    let rubbing = revolute.filter(|joint| joint.friction != 0.0);
+    let rubbing = driven.filter(|(_, drive)| drive.friction != 0.0);
     let rubbing: Vec<String> = rubbing
-        .map(|joint| format!("{} {} N m", joint.name, joint.friction))
+        .map(|(name, drive)| format!("{name} {} N m", drive.friction))
         .collect();
     if !rubbing.is_empty() {
         notes.push(format!(
@@ -286,7 +296,6 @@ fn leg(
             ));
         }
         let armature = armature.map(|own| own[joints.len()]);
-        let armature = armature.or(moving.joint.armature);
         let child = tree.child(&moving);
         let rigid = tree.rigid(child)?;
         next = match rigid.moving[..] {
@@ -324,16 +333,20 @@ fn joint(
         name: &urdf.name,
     };
     tree.revolute(urdf)?;
+    let drive = urdf.drive.clone();
+    let drive = drive.map_err(|message| syntax::syntax(check.path, message))?;
     let raw = RawJoint {
         xyz: urdf.origin.xyz,
         rpy: urdf.origin.rpy,
         axis: urdf.axis,
-        q_min: urdf.limit.lower,
-        q_max: urdf.limit.upper,
-        rate_max: urdf.limit.velocity,
-        torque_max: urdf.limit.effort,
-        armature: armature.unwrap_or(DEFAULT_ARMATURE_KG_M2),
-        damping: urdf.damping,
+        q_min: drive.limit.lower,
+        q_max: drive.limit.upper,
+        rate_max: drive.limit.velocity,
+        torque_max: drive.limit.effort,
+        armature: armature
+            .or(drive.armature)
+            .unwrap_or(DEFAULT_ARMATURE_KG_M2),
+        damping: drive.damping,
     };
     let joint = check.joint(place, &raw, body)?;
     Ok(Joint {

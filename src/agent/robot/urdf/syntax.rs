@@ -46,13 +46,20 @@ pub(super) struct Joint {
     pub parent: String,
     pub child: String,
     pub axis: [f64; 3],
+    /// What moves it, or what is wrong there: a joint that is held still may say anything.
+    pub drive: Result<Drive, String>,
+    /// The joint that it follows, if it does.
+    pub mimic: Option<String>,
+}
+
+/// `<limit>` and `<dynamics>` of a joint.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
     pub limit: Limit,
     pub damping: f64,
     pub friction: f64,
     /// Inertia of the rotor as seen from the joint, where the file says it, kg m^2.
     pub armature: Option<f64>,
-    /// The joint that it follows, if it does.
-    pub mimic: Option<String>,
 }
 
 /// A `<limit>`; zero where there is none.
@@ -115,13 +122,12 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Urdf, RobotError> {
     })?;
     let reader = Reader {
         document: &document,
-        path,
         has_quaternions: false,
     };
-    reader.robot()
+    reader.robot().map_err(|message| syntax(path, message))
 }
 
-fn syntax(path: &Path, message: String) -> RobotError {
+pub(super) fn syntax(path: &Path, message: String) -> RobotError {
     RobotError::Syntax {
         path: path.to_path_buf(),
         message,
@@ -130,13 +136,12 @@ fn syntax(path: &Path, message: String) -> RobotError {
 
 struct Reader<'a> {
     document: &'a Document<'a>,
-    path: &'a Path,
     /// Whether the file is of a version that knows `quat_xyzw`.
     has_quaternions: bool,
 }
 
 impl<'a> Reader<'a> {
-    fn robot(mut self) -> Result<Urdf, RobotError> {
+    fn robot(mut self) -> Result<Urdf, String> {
         let root = self.document.root_element();
         if root.tag_name().name() != "robot" {
             return Err(self.wrong(root, "this is no <robot>; name a URDF"));
@@ -168,7 +173,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn link(&self, node: Node<'a, 'a>) -> Result<Link, RobotError> {
+    fn link(&self, node: Node<'a, 'a>) -> Result<Link, String> {
         let inertial = child(node, "inertial").map(|inertial| {
             let inertia = self.needed(inertial, "inertia")?;
             let mut six = [0.0; 6];
@@ -176,7 +181,7 @@ impl<'a> Reader<'a> {
             for (entry, name) in six.iter_mut().zip(names) {
                 *entry = self.number(inertia, name, None)?;
             }
-            Ok(Inertial {
+            Ok::<_, String>(Inertial {
                 origin: self.origin(inertial)?,
                 mass: self.number(self.needed(inertial, "mass")?, "value", None)?,
                 inertia: six,
@@ -188,7 +193,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn joint(&self, node: Node<'a, 'a>) -> Result<Joint, RobotError> {
+    fn joint(&self, node: Node<'a, 'a>) -> Result<Joint, String> {
         let word = self.text(node, "type")?;
         let kind = JointKind::ALL.into_iter().find(|kind| kind.word() == word);
         let kind = kind.ok_or_else(|| {
@@ -198,21 +203,6 @@ impl<'a> Reader<'a> {
                 &format!("the type {word:?} is none of {known}; take one of these"),
             )
         })?;
-        let limit = child(node, "limit").map(|limit| {
-            Ok(Limit {
-                lower: self.number(limit, "lower", Some(0.0))?,
-                upper: self.number(limit, "upper", Some(0.0))?,
-                effort: self.number(limit, "effort", None)?,
-                velocity: self.number(limit, "velocity", None)?,
-            })
-        });
-        let dynamics = child(node, "dynamics");
-        let of_dynamics = |name| match dynamics {
-            Some(dynamics) => self.number(dynamics, name, Some(0.0)),
-            None => Ok(0.0),
-        };
-        let armature = dynamics.filter(|node| node.has_attribute("armature"));
-        let armature = armature.map(|node| self.number(node, "armature", None));
         let axis = child(node, "axis").map(|axis| self.three(axis, "xyz"));
         let link = |tag| self.text(self.needed(node, tag)?, "link");
         let mimic = child(node, "mimic").map(|mimic| self.text(mimic, "joint"));
@@ -223,15 +213,36 @@ impl<'a> Reader<'a> {
             parent: link("parent")?,
             child: link("child")?,
             axis: axis.transpose()?.flatten().unwrap_or([1.0, 0.0, 0.0]),
-            limit: limit.transpose()?.unwrap_or_default(),
-            damping: of_dynamics("damping")?,
-            friction: of_dynamics("friction")?,
-            armature: armature.transpose()?,
+            drive: self.drive(node),
             mimic: mimic.transpose()?,
         })
     }
 
-    fn origin(&self, node: Node<'a, 'a>) -> Result<Pose, RobotError> {
+    fn drive(&self, joint: Node<'a, 'a>) -> Result<Drive, String> {
+        let limit = child(joint, "limit").map(|limit| {
+            Ok::<_, String>(Limit {
+                lower: self.number(limit, "lower", Some(0.0))?,
+                upper: self.number(limit, "upper", Some(0.0))?,
+                effort: self.number(limit, "effort", None)?,
+                velocity: self.number(limit, "velocity", None)?,
+            })
+        });
+        let dynamics = child(joint, "dynamics");
+        let of_dynamics = |name| match dynamics {
+            Some(dynamics) => self.number(dynamics, name, Some(0.0)),
+            None => Ok(0.0),
+        };
+        let armature = dynamics.filter(|node| node.has_attribute("armature"));
+        let armature = armature.map(|node| self.number(node, "armature", None));
+        Ok(Drive {
+            limit: limit.transpose()?.unwrap_or_default(),
+            damping: of_dynamics("damping")?,
+            friction: of_dynamics("friction")?,
+            armature: armature.transpose()?,
+        })
+    }
+
+    fn origin(&self, node: Node<'a, 'a>) -> Result<Pose, String> {
         let Some(origin) = child(node, "origin") else {
             return Ok(Pose::default());
         };
@@ -259,24 +270,19 @@ impl<'a> Reader<'a> {
     }
 
     /// A child element that has to be there.
-    fn needed(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, RobotError> {
+    fn needed(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, String> {
         child(node, tag)
             .ok_or_else(|| self.wrong(node, &format!("<{tag}> is missing; add this element")))
     }
 
     /// An attribute that has to be there.
-    fn text(&self, node: Node<'a, 'a>, name: &str) -> Result<String, RobotError> {
+    fn text(&self, node: Node<'a, 'a>, name: &str) -> Result<String, String> {
         let text = node.attribute(name).map(str::to_string);
         text.ok_or_else(|| self.wrong(node, &format!("{name} is missing; add this attribute")))
     }
 
     /// A number; the given one where there is none.
-    fn number(
-        &self,
-        node: Node<'a, 'a>,
-        name: &str,
-        default: Option<f64>,
-    ) -> Result<f64, RobotError> {
+    fn number(&self, node: Node<'a, 'a>, name: &str, default: Option<f64>) -> Result<f64, String> {
         match (self.numbers::<1>(node, name)?, default) {
             (Some([number]), _) | (None, Some(number)) => Ok(number),
             (None, None) => {
@@ -285,7 +291,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn three(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<[f64; 3]>, RobotError> {
+    fn three(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<[f64; 3]>, String> {
         self.numbers::<3>(node, name)
     }
 
@@ -295,7 +301,7 @@ impl<'a> Reader<'a> {
         &self,
         node: Node<'a, 'a>,
         name: &str,
-    ) -> Result<Option<[f64; N]>, RobotError> {
+    ) -> Result<Option<[f64; N]>, String> {
         let Some(text) = node.attribute(name) else {
             return Ok(None);
         };
@@ -317,7 +323,7 @@ impl<'a> Reader<'a> {
     }
 
     /// What is wrong with an element: its line, its tag, and, unless it is one itself, the link or joint around it.
-    fn wrong(&self, node: Node<'_, '_>, message: &str) -> RobotError {
+    fn wrong(&self, node: Node<'_, '_>, message: &str) -> String {
         let line = self.document.text_pos_at(node.range().start).row;
         let named = node.ancestors().find(|own| {
             let tag = own.tag_name().name();
@@ -335,7 +341,7 @@ impl<'a> Reader<'a> {
             let blank = if named.is_some() { " " } else { "" };
             place += &format!("{blank}<{}>", node.tag_name().name());
         }
-        syntax(self.path, format!("{place}: {message}"))
+        format!("{place}: {message}")
     }
 }
 

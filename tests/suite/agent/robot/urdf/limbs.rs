@@ -66,6 +66,23 @@ fn what_hangs_on_the_trunk_is_held_still_and_is_part_of_it() {
 }
 
 #[test]
+fn what_drives_a_joint_that_is_held_still_stops_nothing_and_is_not_spoken_of() {
+    let whole = with_upper_body();
+    let own = r#"<limit lower="-1" upper="1" effort="1" velocity="1"/>"#;
+    let notes = read(&whole).notes;
+    for other in [
+        "",
+        r#"<limit lower="-1" upper="1"/>"#,
+        r#"<limit effort="many" velocity="fast"/>"#,
+        r#"<limit effort="0" velocity="0"/><dynamics damping="x" friction="0.5" armature="1"/>"#,
+    ] {
+        let robot = read(&whole.replace(own, other));
+        assert_eq!(robot, read(&whole), "{other}");
+        assert_eq!(robot.notes, notes, "{other}");
+    }
+}
+
+#[test]
 fn the_pelvis_is_found_below_a_torso_that_carries_it() {
     let torso = r#"<link name="torso"><inertial><mass value="5"/>
         <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
@@ -118,8 +135,11 @@ fn armature_is_read_and_what_is_assumed_or_left_out_is_said() {
         );
         assert_eq!(leg.joints[1].armature_kg_m2, 0.01);
     }
+    // Of the ten others it is assumed still.
     let notes = said(&text);
-    assert!(!notes.contains("is assumed of each"), "{notes}");
+    let assumed = "the inertia of the rotor is not said of l_hip_roll, l_hip_yaw";
+    assert!(notes.contains(assumed), "{notes}");
+    assert!(!notes.contains("l_hip_pitch, "), "{notes}");
     let left_out = "that of the file is left out (l_hip_pitch 0.2 N m, r_hip_pitch 0.2 N m)";
     assert!(notes.contains(left_out), "{notes}");
 }
