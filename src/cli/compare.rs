@@ -2,12 +2,11 @@
 
 use super::console::{print, print_json};
 use super::exit::{Code, Failure};
+use super::junit::{JunitFile, reported};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use urts_mc::report::junit::junit_of_comparison;
 use urts_mc::report::{comparison, regressions, terminal};
-use urts_mc::run::compare::{self, Asked, compare_runs};
-use urts_mc::run::directory::OutputFile;
+use urts_mc::run::compare::{self, Asked, RunComparison, compare_runs};
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArguments {
@@ -32,8 +31,9 @@ pub(crate) struct CompareArguments {
     /// Write a JUnit XML file for CI: pairs and limits as test cases
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
-    /// Write even where the output directory holds something else
-    #[arg(long)]
+    /// Write even where the output directory holds something else,
+    /// and replace the file of --junit
+    #[arg(long, verbatim_doc_comment)]
     pub(crate) overwrite: bool,
     /// Print the findings as JSON on standard output
     #[arg(long)]
@@ -58,18 +58,14 @@ pub(super) fn compare_command(arguments: &CompareArguments) -> Result<Code, Fail
         let name = |run: &Path| run.file_name().unwrap_or_default().display().to_string();
         Path::new("reports").join(format!("{}-against-{}", name(b), name(a)))
     });
-    let dir = compare::claim(&out, arguments.overwrite)?;
-    let junit = arguments.junit.as_deref().map(OutputFile::claim);
-    let junit = junit.transpose()?;
-    let asked = Asked {
-        pairs: arguments.pair.clone(),
-        ratios: arguments.ratio.clone(),
-        differences: arguments.difference.clone(),
+    let junit = arguments.junit.as_deref();
+    let junit = JunitFile::claim(junit, arguments.overwrite, &[a, b, &out])?;
+    let found = match arguments.compared(&out) {
+        Ok(found) => found,
+        Err(failure) => return Err(reported(junit, "compare", failure)),
     };
-    let found = compare_runs(a, b, &asked)?;
-    compare::write(&found, &comparison(&found), &dir)?;
     if let Some(file) = junit {
-        file.write(junit_of_comparison(&found)?.as_bytes())?;
+        file.write_comparison(&found)?;
     }
     if arguments.json {
         print_json(&found)?;
@@ -79,5 +75,20 @@ pub(super) fn compare_command(arguments: &CompareArguments) -> Result<Code, Fail
     match regressions(&found) {
         None => Ok(Code::Done),
         Some(worse) => Err(Failure::new(Code::Unmet, worse)),
+    }
+}
+
+impl CompareArguments {
+    /// Compares the runs into a directory.
+    fn compared(&self, out: &Path) -> Result<RunComparison, Failure> {
+        let dir = compare::claim(out, [&self.a, &self.b], self.overwrite)?;
+        let asked = Asked {
+            pairs: self.pair.clone(),
+            ratios: self.ratio.clone(),
+            differences: self.difference.clone(),
+        };
+        let found = compare_runs(&self.a, &self.b, &asked)?;
+        compare::write(&found, &comparison(&found), &dir)?;
+        Ok(found)
     }
 }

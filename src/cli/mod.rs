@@ -20,7 +20,7 @@ use arguments::{
 use completions::completions;
 use console::{print, print_json, print_note};
 use exit::{Code, Failure};
-use junit::JunitFile;
+use junit::{JunitFile, reported};
 use progress::ProgressLine;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -122,7 +122,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     let campaign = match arguments.overrides.load() {
         Ok(campaign) => campaign,
         Err(failure) => {
-            let report = arguments.junit_file(arguments.out.as_deref())?;
+            let report = arguments.junit(arguments.out.as_deref())?;
             let file = &arguments.overrides.campaign;
             let name = file.file_stem().unwrap_or_default().display().to_string();
             return Err(reported(report, &name, failure));
@@ -130,7 +130,7 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     };
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| Path::new("reports").join(&campaign.name));
-    let report = arguments.junit_file(Some(&out))?;
+    let report = arguments.junit(Some(&out))?;
     let findings = match arguments.simulate(&campaign, &out) {
         Ok(findings) => findings,
         Err(failure) => return Err(reported(report, &campaign.name, failure)),
@@ -155,15 +155,13 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     }
 }
 
-/// A failure of a run, after the JUnit file tells of it; that the file cannot be written is the lesser of two failures.
-fn reported(report: Option<JunitFile>, name: &str, failure: Failure) -> Failure {
-    if let Some(report) = report {
-        report.write_error(name, &failure).ok();
-    }
-    failure
-}
-
 impl RunArguments {
+    /// The file of `--junit`; `out` is the run's directory, if it is known.
+    fn junit(&self, out: Option<&Path>) -> Result<Option<JunitFile>, Failure> {
+        let runs: Vec<&Path> = out.into_iter().collect();
+        JunitFile::claim(self.junit.as_deref(), self.overwrite, &runs)
+    }
+
     /// Simulates a campaign into a directory and writes its report.
     fn simulate(&self, campaign: &Campaign, out: &Path) -> Result<Findings, Failure> {
         let options = self.engine.options()?;

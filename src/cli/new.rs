@@ -57,12 +57,7 @@ pub(super) fn new_command(arguments: &NewArguments) -> Result<Code, Failure> {
     let text = renamed(&campaign.text, from, name);
     let file = format!("{name}.toml");
     // What the name or the robot's file would break is said before anything is written.
-    Campaign::parse(
-        &campaign
-            .text
-            .replacen(&format!("name = {from:?}"), &format!("name = {name:?}"), 1),
-        &whole,
-    )?;
+    Campaign::parse(&text, &whole)?;
     let robots = campaign
         .groups()
         .iter()

@@ -175,7 +175,7 @@ impl OutputDir {
         let written = fs::create_dir_all(&self.0)
             .and_then(|()| File::create(&part))
             .map(Sink::new)
-            .and_then(|mut file| fill(&mut file).and_then(|()| file.flush()))
+            .and_then(|mut file| fill(&mut file).and_then(|()| file.finish()))
             .and_then(|()| fs::rename(&part, &whole));
         written.map_err(|source| {
             // The error that is reported is the first.
@@ -187,13 +187,21 @@ impl OutputDir {
         })
     }
 
+    /// Takes away a file of an earlier time, if there is one: what says that the directory is whole goes first.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn remove(&self, name: &str) -> Result<(), OutputError> {
+        remove(self.0.join(name))
+    }
+
     /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled,
     /// and what the new run may not replace.
     ///
     /// # Errors
     /// If there is something and it cannot be removed.
     pub fn begin(&self) -> Result<(), OutputError> {
-        remove(self.0.join(MANIFEST))?;
+        self.remove(MANIFEST)?;
         let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
         for entry in entries {
             let name = entry.file_name();
@@ -282,7 +290,7 @@ impl OutputFile {
     /// # Errors
     /// If it cannot be removed.
     pub fn remove(&self) -> Result<(), OutputError> {
-        remove(self.dir.path().join(&self.name))
+        self.dir.remove(&self.name)
     }
 
     /// Writes the file under its name only when it is complete.
@@ -312,6 +320,12 @@ impl Sink {
     fn new(file: File) -> Self {
         let (file, broken) = (BufWriter::new(file), None);
         Self { file, broken }
+    }
+
+    /// Brings all to the disk: a file that has its final name is whole even after a loss of power.
+    fn finish(mut self) -> std::io::Result<()> {
+        self.flush()?;
+        self.file.get_ref().sync_all()
     }
 
     /// Keeps an error, for the encoder may not.

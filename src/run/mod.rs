@@ -149,6 +149,8 @@ pub fn run_on(
     extras: Extras,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
+    // What is read from here on, not what the files are when the run ends.
+    let inputs = inputs(campaign);
     let (gains, synthesis_s) = synthesized(campaign, progress)?;
     can_be_judged(campaign, &gains)?;
     notes.extend(cautions(campaign, &gains));
@@ -208,7 +210,7 @@ pub fn run_on(
         segments: simulation.segments,
         notes,
         files,
-        inputs: inputs(campaign),
+        inputs,
         cross_check,
         cross_check_missing,
         times,

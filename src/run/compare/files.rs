@@ -6,7 +6,7 @@ use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
 use crate::run::labels::Labels;
 use crate::run::pretty;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The findings, which are written last.
 const FINDINGS: &str = "compare.json";
@@ -15,21 +15,30 @@ const PAGES: [&str; 2] = ["compare.html", "compare.md"];
 /// The statistics of every pair and on what terms they are.
 const TABLES: [&str; 2] = ["comparison", "fairness"];
 
-/// Claims a directory before any work is done: it may be absent, empty, or hold an earlier comparison; anything else is
-/// refused unless `overwrite`.
+/// Claims a directory before any work is done: it may be absent, empty, or hold an earlier comparison of the runs in
+/// the same two directories; anything else is refused unless `overwrite`.
 ///
 /// # Errors
 /// If the directory holds something else or cannot be written. Nothing is left behind then.
-pub fn claim(path: &Path, overwrite: bool) -> Result<OutputDir, OutputError> {
+pub fn claim(path: &Path, runs: [&PathBuf; 2], overwrite: bool) -> Result<OutputDir, OutputError> {
     let is_own = |name: &str| {
         let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
         let table = TABLES.contains(&stem) && ["parquet", "csv"].contains(&extension);
         table || name == FINDINGS || PAGES.contains(&name)
     };
-    OutputDir::claim_for(path, overwrite, &is_own, None)
+    let earlier = std::fs::read_to_string(path.join(FINDINGS)).ok();
+    let earlier = earlier.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+    let runs = runs.map(|run| run.to_str());
+    let what = earlier.and_then(|found| {
+        let earlier = ["a", "b"].map(|run| found[run]["path"].as_str());
+        let [a, b] = earlier.map(|path| path.unwrap_or("?"));
+        (earlier != runs).then(|| format!("a comparison of {b} with {a}"))
+    });
+    OutputDir::claim_for(path, overwrite, &is_own, what)
 }
 
-/// Writes a comparison with its pages, in HTML and in Markdown.
+/// Writes a comparison with its pages, in HTML and in Markdown: the findings are taken away first and written last, so
+/// that a directory that has them is whole.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -38,6 +47,7 @@ pub fn write(
     pages: &[String; 2],
     out: &OutputDir,
 ) -> Result<(), CompareError> {
+    out.remove(FINDINGS)?;
     let tables = [
         comparison_table(&found.campaign, &found.comparisons),
         fairness_table(&found.terms),

@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, Measure};
 use crate::controllers::{GainSet, SimulatedController};
 use crate::results::Measured;
 use crate::results::table::Table;
-use crate::run::directory::{OutputDir, OutputFile};
+use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
 use crate::run::labels::Labels;
 use crate::run::manifest::{GIT_REVISION, campaign_hash};
@@ -98,7 +98,7 @@ pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Output
 /// # Errors
 /// If a file cannot be encoded or written.
 pub fn write(tuning: &Tuning, pages: &[String; 2], out: &OutputDir) -> Result<(), TuneError> {
-    OutputFile::claim(&out.path().join(FINDINGS))?.remove()?;
+    out.remove(FINDINGS)?;
     let [parquet, csv] = TABLES;
     let table = table(tuning);
     out.write_parquet(parquet, &table, &Labels::new(&tuning.campaign, "tune"))?;

@@ -61,6 +61,32 @@ fn a_regression_ends_with_exit_code_4_and_a_failed_test_case() {
         junit.contains("name=\"B:pid-placed is not worse than A:pid-placed\""),
         "{junit}"
     );
+    // A file of a run is never replaced, other files only on demand; what is refused does not look as if it had passed.
+    for (file, words) in [
+        (
+            "before/manifest.json",
+            "the run writes a file of this name itself",
+        ),
+        ("c.toml", "exists already and is no JUnit file"),
+    ] {
+        let before = place.read(file);
+        let refused = place.program(&["compare", "before", "after", "--junit", file]);
+        assert_eq!(refused.code, 2);
+        assert!(refused.stderr.contains(words), "{}", refused.stderr);
+        assert_eq!(place.read(file), before);
+    }
+    let nothing = [
+        "compare",
+        "before",
+        "nowhere",
+        "--junit",
+        "c.xml",
+        "--out",
+        "same",
+        "--overwrite",
+    ];
+    assert_eq!(place.program(&nothing).code, 2);
+    assert!(place.read("c.xml").contains("errors=\"1\""));
     let page = place.read(&format!("{dir}/compare.md"));
     assert!(
         page.contains("B is after, A is before: 16 episodes"),

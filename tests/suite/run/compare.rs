@@ -246,7 +246,7 @@ fn a_longer_run_is_compared_as_far_as_the_shorter_one_goes_and_files_are_the_sam
     assert!(found.notes[0].contains("the first 40 are compared, and the other 24 are left out"));
     let files = |name: &str| {
         let place = runs.0.path().join(name);
-        let out = claim(&place, false).unwrap();
+        let out = claim(&place, [&a, &b], false).unwrap();
         write(&found, &comparison(&found), &out).unwrap();
         let names = fs::read_dir(&place).unwrap();
         let mut names: Vec<PathBuf> = names.map(|entry| entry.unwrap().path()).collect();
@@ -259,8 +259,13 @@ fn a_longer_run_is_compared_as_far_as_the_shorter_one_goes_and_files_are_the_sam
     let first = files("first");
     assert_eq!(first.len(), 7);
     assert_eq!(first, files("second"));
-    // A run's directory is not replaced.
-    assert!(claim(&a, false).is_err());
+    // Neither a run's directory nor a comparison of other runs is replaced, an earlier comparison of the same is.
+    assert!(claim(&a, [&a, &b], false).is_err());
+    let first = runs.0.path().join("first");
+    assert!(claim(&first, [&a, &b], false).is_ok());
+    let other = claim(&first, [&b, &a], false).unwrap_err().to_string();
+    assert!(other.contains("holds a comparison of"), "{other}");
+    assert!(claim(&first, [&b, &a], true).is_ok());
 }
 
 /// Scores of two runs of one controller: in each episode whether it fails, and the logarithm of its error.
