@@ -88,7 +88,8 @@ pub const DICTIONARY: &[ColumnEntry] = entries! {
     "initial_error_rate_<channel>" Real "m/s or rad/s" "a channel of the other kind of agent" "its rate at the start",
     "initial_error_integral_<channel>" Real "m s or rad s" "a channel of the other kind of agent" "its integral at the start",
     "disturbance<n>_<parameter>_<channel>" Real "by name" "the disturbance does not act there" "a parameter of disturbance n, numbered through all groups",
-    "fault<n>_occurs" Flag "" "the other group" "whether the agent has fault n, numbered through all groups; faults.parquet has names",
+    "fault<n>_occurs" Flag "" "the other group" "whether the agent has fault n, numbered through all groups",
+    "fault<n>_name" Text "" "the fault does not occur" "name of fault n",
     "fault<n>_channel" Text "" "the fault does not occur" "the channel that it strikes, of a fault that strikes one at random",
     "fault<n>_<parameter>" Real "by name" "the fault does not occur, or not there" "a parameter of fault n; onset_s, duration_s, ramp_s, or one of a channel",
     of "channels":

@@ -296,8 +296,8 @@ impl<'a> AgentVerdict<'a> {
     }
 }
 
-/// Every quantity of an agent as it acts; before those of a fault, whether it occurs and, if it strikes one channel,
-/// which.
+/// Every quantity of an agent as it acts; before those of a fault, whether it occurs, its name, and, if it strikes one
+/// channel, which.
 fn write_draw(row: &mut Row<'_>, group: &AgentGroup, quantities: &[Quantity], draw: &AgentDraw) {
     let mut fault = None;
     for quantity in quantities {
@@ -308,6 +308,8 @@ fn write_draw(row: &mut Row<'_>, group: &AgentGroup, quantities: &[Quantity], dr
             let number = group.first_fault + index;
             let drawn = &draw.faults[index];
             row.flag(|| format!("fault{number}_occurs"), drawn.occurs());
+            let name = drawn.occurs().then(|| group.faults[index].name.clone());
+            row.name(|| format!("fault{number}_name"), name.unwrap_or_default());
             if group.faults[index].strikes_one() {
                 let struck = drawn.only_channel();
                 let struck = struck.map(|channel| group.channels()[channel].clone());

@@ -1,6 +1,7 @@
 //! The tables in the hands of those who read them: every reader opens, filters, subtracts, groups and joins.
 
 use crate::common::repository;
+use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
@@ -11,10 +12,8 @@ const PYTHONS: [&str; 3] = [
     "URTS_PYTHON_PYARROW_16",
 ];
 
-#[test]
-fn every_reader_does_with_every_table_what_its_users_do() {
-    let place = TempDir::new().unwrap();
-    let out = place.path().join("out");
+/// Runs the smoke campaign into a directory.
+fn run(out: &Path, more: &[&str]) {
     let ended = Command::new(env!("CARGO_BIN_EXE_urts-mc"))
         .args([
             "run",
@@ -24,13 +23,8 @@ fn every_reader_does_with_every_table_what_its_users_do() {
             "--quiet",
             "--out",
         ])
-        .arg(&out)
-        .args([
-            "--set",
-            "strata=[{ faults = \"each\" }, { faults = [] }]",
-            "--episodes",
-            "24",
-        ])
+        .arg(out)
+        .args(more)
         .current_dir(repository(""))
         .output()
         .unwrap();
@@ -39,6 +33,14 @@ fn every_reader_does_with_every_table_what_its_users_do() {
         "{}",
         String::from_utf8_lossy(&ended.stderr)
     );
+}
+
+#[test]
+fn every_reader_does_with_every_table_what_its_users_do() {
+    let place = TempDir::new().unwrap();
+    let out = place.path().join("out");
+    let strata = "strata=[{ faults = \"each\" }, { faults = [] }]";
+    run(&out, &["--set", strata, "--episodes", "24"]);
     let required = std::env::var_os("URTS_PYTHON").is_some();
     for name in PYTHONS {
         let Some(python) = std::env::var_os(name) else {
@@ -57,4 +59,27 @@ fn every_reader_does_with_every_table_what_its_users_do() {
         assert!(said.lines().count() > 15, "{name}: {said}");
         println!("{said}");
     }
+}
+
+#[test]
+fn the_notebook_that_reads_a_run_goes_through_and_draws() {
+    let Some(python) = std::env::var_os(PYTHONS[0]) else {
+        println!("SKIPPED: {} names no Python with readers", PYTHONS[0]);
+        return;
+    };
+    let place = TempDir::new().unwrap();
+    run(&place.path().join("reports/smoke"), &[]);
+    let ended = Command::new(python)
+        .arg(repository("tests/notebook.py"))
+        .arg(repository(""))
+        .current_dir(place.path())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&ended.stdout);
+    assert!(
+        ended.status.success(),
+        "{said}{}",
+        String::from_utf8_lossy(&ended.stderr)
+    );
+    println!("{said}");
 }
