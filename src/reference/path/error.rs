@@ -33,6 +33,16 @@ pub enum PathError {
         /// The value given.
         value: f64,
     },
+    /// The path has more pieces than memory should hold.
+    #[error(
+        "the path takes {pieces} pieces of step_m and can have at most {limit}, raise step_m or divide the path"
+    )]
+    TooLong {
+        /// Pieces that it takes.
+        pieces: f64,
+        /// The largest number.
+        limit: u32,
+    },
     /// The path turns back on itself, or one bend slows all of it beyond use.
     #[error(
         "the path turns too sharply at points_m[{index}] (by more than 175 degrees, or slowing it \

@@ -105,10 +105,15 @@ pub(super) fn through(legs: &[PathPiece], step: f64) -> Vec<Piece> {
     pieces
 }
 
+/// How many pieces a leg is divided into.
+pub(super) fn steps(leg: &PathPiece, step: f64) -> f64 {
+    let steps = leg.length / step + ROUNDING_BIAS;
+    steps.round().clamp(1.0, f64::from(MAX_STEPS_PER_LEG))
+}
+
 /// Straight pieces of equal length, as near to `step` as possible.
 fn divide(leg: &PathPiece, step: f64) -> impl Iterator<Item = Piece> {
-    let steps = leg.length / step + ROUNDING_BIAS;
-    let steps = steps.round().clamp(1.0, f64::from(MAX_STEPS_PER_LEG));
+    let steps = steps(leg, step);
     let length = leg.length / steps;
     let count = (0..MAX_STEPS_PER_LEG)
         .map(f64::from)

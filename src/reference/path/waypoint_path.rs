@@ -26,6 +26,9 @@ const RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Cosine of the sharpest turn between two legs, 175 degrees. At a reversal the curve has a cusp.
 const MIN_TURN_COSINE: f64 = -0.996_194_698_091_745_5;
 
+/// Pieces of all legs together: some 30 MB.
+const MAX_PIECES: u32 = 100_000;
+
 /// Largest ratio of the duration to that of a straight path of the same length.
 const MAX_SLOWDOWN: f64 = 20.0;
 
@@ -84,6 +87,13 @@ impl WaypointPath {
         };
         let legs = checked_legs(points_m)?;
 
+        let pieces: f64 = legs.iter().map(|leg| spline::steps(leg, step)).sum();
+        if pieces > f64::from(MAX_PIECES) {
+            return Err(PathError::TooLong {
+                pieces,
+                limit: MAX_PIECES,
+            });
+        }
         let curve = Curve::new(spline::through(&legs, step));
         let length = curve.length();
         let peak = curve.peak_acceleration();

@@ -408,6 +408,19 @@ fn refuses_what_does_not_define_a_path() {
 }
 
 #[test]
+fn refuses_more_pieces_than_memory_should_hold() {
+    let many: Vec<Vector> = (0..1000).map(|k| [f64::from(k), 0.0, 1.0]).collect();
+    let with = |step_m: f64| WaypointPath::with_step(&many, step_m, SLOW);
+    // A leg has at most a thousand pieces.
+    let refused = PathError::TooLong {
+        pieces: 999_000.0,
+        limit: 100_000,
+    };
+    assert_eq!(with(1e-6).err(), Some(refused));
+    assert!(with(0.1).is_ok());
+}
+
+#[test]
 fn refuses_reversals_and_needle_bends() {
     let turned = |degrees: f64, step_m: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
