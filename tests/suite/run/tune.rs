@@ -223,6 +223,36 @@ fn gains_that_a_search_found_fly_in_a_campaign_as_they_did_in_the_search() {
 }
 
 #[test]
+fn a_search_on_groups_finds_gains_for_each_which_their_campaign_takes() {
+    let place = TempDir::new().unwrap();
+    let changes = [
+        "time.duration_s=4.5",
+        "time.settle_s=2.0",
+        "tune={ minimise = \"rmse p50\", budget = 12, episodes = 4, confirmation = 8 }",
+    ];
+    let tuning = searched(&altered("mixed-teams", &changes), "pid", 0);
+    written(&tuning, place.path());
+    let file = place.path().join("gains.json").display().to_string();
+    let named = |group: usize| {
+        let name = tuning.structure.tuned;
+        format!("group.{group}.synthesis.named.mine={{ gains = {file:?}, controller = {name:?} }}")
+    };
+    let (uavs, robots) = (named(0), named(1));
+    let mine = [&changes[..], &[&uavs, &robots, "controllers=[\"mine\"]"]].concat();
+    let read = GainSet::of_groups(&altered("mixed-teams", &mine)).unwrap();
+    // Position and attitude of the UAVs, joints of the robots: each has gains of its own.
+    assert_eq!((read.len(), tuning.controllers.len()), (2, 2));
+    let gains = |sets: &[urts_mc::controllers::SimulatedController]| -> Vec<Vec<f64>> {
+        let groups = sets.iter().flat_map(|set| &set.groups);
+        groups.map(|own| own.loop_gains.k.to_vec()).collect()
+    };
+    let own: Vec<_> = read.iter().map(|set| set.controllers[0].clone()).collect();
+    let (found, read) = (gains(&tuning.controllers), gains(&own));
+    assert_eq!((found.len(), &found), (3, &read));
+    assert!(found[0] != found[1] && found[1] != found[2]);
+}
+
+#[test]
 fn a_directory_with_another_search_is_not_replaced_unless_asked() {
     let place = TempDir::new().unwrap();
     let tuning = searched(&short(&["tune.budget=9"]), "pid", 0);
