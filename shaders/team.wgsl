@@ -91,6 +91,9 @@ fn agent_respond(stage: u32, at: Reference, step: u32) -> Response {
             inputs.force = fma(others * own.kappa, position, disturbance);
         }
     }
+    if N_FRICTIONS > 0u {
+        inputs.force = inputs.force + friction_force(motion.y);
+    }
     if N_VORTICES > 0u && own.channel == HEIGHT {
         inputs.force = inputs.force + vortex_force(stage);
     }

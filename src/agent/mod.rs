@@ -7,7 +7,10 @@ mod role;
 pub use actuation::ActuationKind;
 pub use role::ChannelRole;
 
-use robot::{JOINTS, Robot};
+use nalgebra::Vector6;
+use robot::dynamics::mass_matrix;
+use robot::kinematics::by_leg;
+use robot::{JOINTS, LEG_JOINTS, Leg, Robot};
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -131,6 +134,29 @@ impl Agent {
                 joints.map(|joint| joint.torque_max_n_m).collect()
             }
             _ => vec![f64::INFINITY; self.channels().len()],
+        }
+    }
+
+    /// The acceleration that a unit of force or torque gives each channel, 1/kg or 1/(kg m^2): of a robot that stands,
+    /// the others of its joints being free.
+    #[must_use]
+    pub fn mobilities(&self) -> Vec<f64> {
+        match self {
+            Self::Uav(uav) => {
+                let [x, y, z] = uav.inertia_kg_m2;
+                [uav.mass_kg, uav.mass_kg, uav.mass_kg, x, y, z]
+                    .map(f64::recip)
+                    .to_vec()
+            }
+            Self::Biped(biped) => {
+                let robot = &biped.robot;
+                let legs = robot.legs.iter().zip(by_leg(&robot.standing_rad));
+                let of_leg = |(leg, q_rad): (&Leg, Vector6<f64>)| {
+                    let inverse = mass_matrix(leg, &q_rad).try_inverse().unwrap_or_default();
+                    <[f64; LEG_JOINTS]>::from(inverse.diagonal())
+                };
+                legs.flat_map(of_leg).collect()
+            }
         }
     }
 

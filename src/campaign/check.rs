@@ -235,7 +235,7 @@ impl Check<'_> {
                 Some(own) if list.len() == self.channels.len() => {
                     (format!("{key}[{channel}]"), own)
                 }
-                _ => return Err(self.wrong_length(key, list.len())),
+                _ => return Err(self.wrong_length(key, list.len(), self.channels.len())),
             },
             (Some(one), _) => (key.to_string(), one),
         };
@@ -317,12 +317,23 @@ impl Check<'_> {
         default: f64,
         bounds: Bounds,
     ) -> Result<Vec<f64>, CampaignError> {
-        let channels = self.channels.len();
+        self.numbers_of(key, numbers, default, bounds, self.channels.len())
+    }
+
+    /// The same before the channels are known, of which there are so many.
+    pub(super) fn numbers_of(
+        &self,
+        key: &str,
+        numbers: Option<&Numbers>,
+        default: f64,
+        bounds: Bounds,
+        channels: usize,
+    ) -> Result<Vec<f64>, CampaignError> {
         let values = match numbers {
             None => vec![default; channels],
             Some(Numbers::One(value)) => vec![*value; channels],
             Some(Numbers::List(list)) if list.len() == channels => list.clone(),
-            Some(Numbers::List(list)) => return Err(self.wrong_length(key, list.len())),
+            Some(Numbers::List(list)) => return Err(self.wrong_length(key, list.len(), channels)),
         };
         for (channel, &value) in values.iter().enumerate() {
             let own = match numbers {
@@ -334,14 +345,11 @@ impl Check<'_> {
         Ok(values)
     }
 
-    fn wrong_length(&self, key: &str, length: usize) -> CampaignError {
+    fn wrong_length(&self, key: &str, length: usize, channels: usize) -> CampaignError {
         self.invalid(
             key,
             format!("a list of {length}"),
-            &format!(
-                "a list has one value for each of the {} channels",
-                self.channels.len()
-            ),
+            &format!("a list has one value for each of the {channels} channels"),
             "complete it, or give one value for all",
         )
     }

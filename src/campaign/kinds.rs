@@ -70,6 +70,10 @@ pub(crate) const GUST_DURATION: Parameter = of_agent("duration_s", Bounds::Posit
 pub(crate) const MEAN_WIND: Parameter = of_agent("wind_m_s", Bounds::NonNegative);
 pub(crate) const ALTITUDE: Parameter = of_agent("altitude_m", Bounds::Between(3.0, 305.0));
 pub(crate) const AIRSPEED: Parameter = of_agent("airspeed_m_s", Bounds::AtLeast(0.5));
+pub(crate) const COULOMB: Parameter = required("coulomb", Bounds::NonNegative);
+pub(crate) const VISCOUS: Parameter = required("viscous", Bounds::NonNegative).or(0.0);
+pub(crate) const SMOOTHING_RATE: Parameter =
+    required("smoothing_rate", Bounds::AtLeast(1e-3)).or(0.05);
 pub(crate) const JET_FORCE: Parameter = of_agent("force_n", Bounds::NonNegative);
 pub(crate) const JET_RADIUS: Parameter = of_agent("radius_m", JET_SIZE);
 pub(crate) const JET_LENGTH: Parameter = of_agent("length_m", JET_SIZE);
@@ -120,6 +124,14 @@ kinds! {
         needs: Needs::Nothing,
         parameters: &[AMPLITUDE],
         is_smooth: true,
+    }
+    /// - coulomb tanh(x' / smoothing_rate) - viscous x', at the true rate x' of each channel.
+    Friction, "friction" {
+        reach: Reach::All,
+        needs: Needs::Nothing,
+        parameters: &[COULOMB, VISCOUS, SMOOTHING_RATE],
+        // Where an acceleration jumps, so does its rate.
+        is_smooth: false,
     }
     /// UAV: gain speed (1 - cos(2 pi (t - onset) / duration)) / 2 while it lasts, on x, y and z.
     Gust1Cosine, "gust-1-cosine" {

@@ -3,7 +3,9 @@
 use super::distribution::Distribution;
 use super::disturbances_and_faults::Fault;
 use super::group::AgentGroup;
+use super::kinds::{COULOMB, DisturbanceKind, SMOOTHING_RATE, VISCOUS};
 use super::measure::{Measure, Side};
+use super::parameter::Parameter;
 use super::plan::ALL;
 use super::quantity::RandomQuantity;
 use super::requirement::Requirement;
@@ -11,6 +13,9 @@ use super::validated::Campaign;
 use crate::reference::{AgentWalk, Reference, WaypointPath};
 use crate::statistics::{LEVEL, alike_needed, runs_needed, sequential_runs_needed};
 use crate::util::format::digits;
+
+/// Steps in which friction may turn a motion; the Runge-Kutta method is unstable beyond 2.78.
+const STEPS_OF_FRICTION: f64 = 2.0;
 
 /// A sentence for each of them: requirements that so few episodes cannot prove, references whose end is not reached,
 /// faults that nobody has or that are gone before they have come.
@@ -43,6 +48,7 @@ fn of_group(group: &AgentGroup) -> impl Iterator<Item = String> {
     robot
         .chain(unreached(group))
         .chain(overwhelming(group))
+        .chain(stiff(group))
         .chain(unfinished)
 }
 
@@ -92,6 +98,50 @@ fn overwhelming(group: &AgentGroup) -> Option<String> {
         .into_iter()
         .enumerate()
         .find_map(of_channel)
+}
+
+/// Friction that turns so suddenly that a step of the integration leaps over it: what is simulated then shakes.
+fn stiff(group: &AgentGroup) -> Option<String> {
+    let mobilities = group.agent.mobilities();
+    let of = |index: usize| {
+        let disturbance = &group.disturbances[index];
+        let ends = |parameter: &Parameter, agent: usize, channel: usize| {
+            let named = disturbance
+                .kind
+                .parameters()
+                .iter()
+                .zip(&disturbance.parameters);
+            let mut drawn = named.filter(|(own, _)| own.name == parameter.name);
+            let (_, drawn) = drawn.next()?;
+            let channel = channel.min(drawn.channels - 1);
+            Some(drawn.of(agent, channel).support())
+        };
+        let turns_within_s = |agent: usize, channel: usize| {
+            let [(_, coulomb), (_, viscous), (rate, _)] = [
+                ends(&COULOMB, agent, channel)?,
+                ends(&VISCOUS, agent, channel)?,
+                ends(&SMOOTHING_RATE, agent, channel)?,
+            ];
+            Some(1.0 / ((coulomb / rate + viscous) * mobilities[channel]))
+        };
+        let everywhere =
+            (0..group.team).flat_map(|agent| (0..mobilities.len()).map(move |c| (agent, c)));
+        let times = everywhere.filter_map(|(agent, c)| Some((turns_within_s(agent, c)?, c)));
+        let (shortest_s, c) = times.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (shortest_s * STEPS_OF_FRICTION < group.time.step_s).then(|| {
+            format!(
+                "disturbance[{index}]: friction turns {} within {} s and a step takes {} s: what is simulated shakes; raise \
+                 smoothing_rate {} times, or shorten the step",
+                group.channels()[c],
+                digits(shortest_s, 2),
+                group.time.step_s,
+                (group.time.step_s / (STEPS_OF_FRICTION * shortest_s)).ceil()
+            )
+        })
+    };
+    let all = 0..group.disturbances.len();
+    all.filter(|index| group.disturbances[*index].kind == DisturbanceKind::Friction)
+        .find_map(of)
 }
 
 /// Episodes that are all the same.

@@ -2,6 +2,7 @@
 
 use super::compare::CompareArguments;
 use super::new::NewArguments;
+use super::robot::RobotArguments;
 use clap::builder::{PossibleValuesParser, StyledStr};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -64,6 +65,13 @@ pub(crate) enum Command {
         "urts-mc check campaigns/smoke.toml --set sampling.design=sobol",
     ]))]
     Check(CheckArguments),
+    /// Show what was understood of a robot's file, and whether it can walk
+    #[command(after_help = examples(&[
+        "urts-mc robot campaigns/robots/g1_12dof.toml",
+        "urts-mc robot campaigns/robots/g1_12dof.toml --set reference.gait.step_length_m=0.3 --json",
+        "urts-mc robot campaigns/robots/berkeley_humanoid.toml --svg reports/berkeley.svg",
+    ]))]
+    Robot(RobotArguments),
     /// Search the free parameters of a controller for a campaign's [tune]
     #[command(after_help = examples(&[
         "urts-mc tune campaigns/smoke.toml --controller pid",

@@ -9,6 +9,7 @@ pub(crate) mod exit;
 mod junit;
 mod new;
 mod progress;
+mod robot;
 
 pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
@@ -69,6 +70,7 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
         Command::New(arguments) => new::new_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Tune(arguments) => tune_command(&arguments),
+        Command::Robot(arguments) => robot::robot_command(&arguments),
         Command::Compare(arguments) => compare::compare_command(&arguments),
         Command::Synthesize(arguments) => synthesize_command(&arguments),
         Command::Replay(arguments) => replay_command(&arguments),

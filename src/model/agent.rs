@@ -162,6 +162,12 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS
                 }
             }
         }
+        if !self.signals.frictions.is_empty() {
+            let slowed = kernels::friction_forces(&self.signals.frictions, &velocity);
+            for c in 0..NC {
+                force[c] = force[c] + slowed[c];
+            }
+        }
         // An axis on its own has no vortices, and no channel of this number.
         if NC > HEIGHT && !self.vortices.is_empty() {
             let pushed = kernels::vortex_force(&self.vortices, own, team.places);

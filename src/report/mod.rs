@@ -12,6 +12,7 @@ pub(crate) mod page;
 pub mod paper;
 pub mod problems;
 pub mod requirements;
+mod robot_picture;
 mod run_data;
 pub(crate) mod section;
 pub mod terminal;
@@ -21,6 +22,7 @@ pub use columns::{columns, columns_chapter};
 pub use comparison::{comparison, regressions};
 pub use episode::{Trace, trace};
 pub use page::markdown::Length;
+pub use robot_picture::robot_picture;
 pub use run_data::ReportError;
 pub use tuning::tuning;
 

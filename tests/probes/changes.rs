@@ -258,6 +258,30 @@ pub(super) const OF_SIGNALS: &[Control] = &[
         "exogenous_inputs_remember",
     ),
     control(
+        "friction",
+        "tanh(rate * friction.inverse_smoothing)",
+        "tanh(rate * friction.inverse_smoothing * 1.00001)",
+        "friction_force",
+    ),
+    control(
+        "friction",
+        "fma(rate, -friction.viscous, force)",
+        "fma(slip, -friction.viscous, force)",
+        "friction_force",
+    ),
+    control(
+        "friction",
+        "FRICTIONS + 3u * k",
+        "FRICTIONS + 2u * k",
+        "friction_force",
+    ),
+    control(
+        "team",
+        "friction_force(motion.y)",
+        "friction_force(motion.x)",
+        "agent_respond",
+    ),
+    control(
         "vortex",
         "1.0 / fma(s2, JET_SPREAD, 1.0)",
         "1.0 / fma(s2, JET_SPREAD * 1.00001, 1.0)",

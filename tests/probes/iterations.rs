@@ -47,6 +47,7 @@ const LOOPS: &[(&str, usize)] = &[
     ("finish", 3),
     ("hold_command", 9),
     ("hold_sensor", 6),
+    ("friction_force", 1),
     ("measure", 1),
     ("next_change", 1),
     ("philox4x32", 1),

@@ -10,7 +10,7 @@
 //! | `harness`, `tracked`, `numbers`, `shapes` | running a probe, its tolerances, inputs and shapes |
 //! | `leg` | the dynamics of a robot's leg |
 //! | `iterations` | the bound on the iterations of loops, and the loops that it counts |
-//! | `vortex` | the jets of rotors |
+//! | `friction`, `vortex` | what slows a channel down; the jets of rotors |
 //! | `world`, `states`, `image` | teams in random states, and how their state travels |
 //!
 //! They are in the library because they see its internals. Without an adapter the probes print SKIPPED, unless
@@ -30,6 +30,7 @@ mod buffers;
 mod changes;
 mod controls;
 mod exogenous;
+mod friction;
 mod harness;
 mod image;
 mod iterations;

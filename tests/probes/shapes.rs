@@ -11,8 +11,8 @@ use crate::model::plant::kinds::PlantKind;
 use crate::model::plant::uav::{Attitude, Axis, Thrust, Translation};
 use std::path::Path;
 
-/// How many items each list has, in the order of [`LISTS`], how many turbulences there are, and vortices where channels
-/// are those of a place.
+/// How many items each list has, in the order of [`LISTS`], how many turbulences there are (and as many frictions), and
+/// vortices where channels are those of a place.
 type Counts = ([usize; LISTS.len()], usize, usize);
 
 /// No signal.
@@ -122,6 +122,7 @@ fn lists((counts, turbulences, vortices): Counts) -> Lists {
         counts,
         noise_entries: entries(3, count("noises")),
         turbulence_entries: entries(1, turbulences),
+        frictions: turbulences,
         vortices,
         bursts: (0..bursts).map(|k| (entry(k), k % 2 == 1)).collect(),
         rings: (0..rings).map(|k| k % 2 == 0).collect(),

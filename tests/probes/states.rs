@@ -9,6 +9,7 @@ use crate::draw::member;
 use crate::model::agent::Agent;
 use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::delay_line::DelayLine;
+use crate::model::exogenous::friction::Friction;
 use crate::model::exogenous::lists::Oscillation;
 use crate::model::exogenous::noise::{Filter, Noise, Turbulence};
 use crate::model::exogenous::vortex::Vortex;
@@ -165,6 +166,17 @@ impl Random<'_> {
         });
         turbulences.collect()
     }
+
+    fn frictions<L: Lane<Real = f32>, const NC: usize>(&mut self) -> Vec<[Friction<L>; NC]> {
+        let mut some = |low, high| L::number(self.numbers.between(low, high));
+        let mut friction = || Friction {
+            coulomb: some(0.1, 2.0),
+            inverse_smoothing: some(1.0, 100.0),
+            viscous: some(0.05, 0.5),
+        };
+        let each = (0..self.lists.frictions).map(|_| std::array::from_fn(|_| friction()));
+        each.collect()
+    }
 }
 
 impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<P, NC, NS, NX> {
@@ -211,6 +223,7 @@ impl<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX: usize> World<
         signals.lists.command_rings = random.ring("command_rings");
         signals.lists.sensor_rings = random.ring("sensor_rings");
         signals.turbulences = random.turbulences();
+        signals.frictions = random.frictions();
         let first_fault = random.switch::<L>(0.0, 0.0).onset;
         let numbers = &mut random.numbers;
         let mut some = |low, high| L::number(numbers.between(low, high));

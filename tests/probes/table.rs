@@ -2,7 +2,7 @@
 
 use super::harness::{Compared, Lab};
 use super::world::World;
-use super::{buffers, exogenous, leg, loops, pure, shapes, team, vortex, windows};
+use super::{buffers, exogenous, friction, leg, loops, pure, shapes, team, vortex, windows};
 use crate::model::plant::kinds::PlantKind;
 
 /// A probe of one or a few functions.
@@ -335,6 +335,11 @@ pub(super) const GROUPS: &[Probe] = &[
         over_shapes!(team::slots)
     ),
     probe!("team_sum", ["team_sum"], over_shapes!(team::team_sum)),
+    probe!(
+        "friction_force",
+        ["friction_force", "friction_drawn"],
+        over_shapes!(friction::forces)
+    ),
     probe!(
         "vortex_force",
         ["vortex_force", "vortex_drawn", "agent_place"],

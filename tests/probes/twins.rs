@@ -203,6 +203,11 @@ const TWINS: &[(&str, &str, Pairs)] = &[
         ],
     ),
     (
+        "friction",
+        include_str!("../../src/model/exogenous/friction.rs"),
+        &[("friction_force", "friction_force")],
+    ),
+    (
         "vortex",
         include_str!("../../src/model/exogenous/vortex.rs"),
         &[
@@ -337,7 +342,12 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["next_change"], "the model's list of changes"),
     (
-        &["window_value", "turbulence_filter", "vortex_drawn"],
+        &[
+            "window_value",
+            "turbulence_filter",
+            "friction_drawn",
+            "vortex_drawn",
+        ],
         "fields",
     ),
     (&["own_member"], "the address that the host gives a channel"),

@@ -8,7 +8,7 @@ use std::fmt::{Debug, Display};
 use std::path::Path;
 
 /// No length, angle, mass, torque or inertia of a biped is larger, and nothing computed from such numbers overflows.
-const LARGEST: f64 = 1e6;
+pub(super) const LARGEST: f64 = 1e6;
 
 /// Shorter axes have no direction.
 const SHORTEST_AXIS: f64 = 1e-6;

@@ -1,6 +1,8 @@
 //! Robots from their files.
 
+use super::check::Check;
 use super::error::{self, RobotError};
+use super::standing;
 use super::structure::Robot;
 use super::table;
 use super::urdf::{self, UrdfOptions};
@@ -44,6 +46,34 @@ impl Format {
     }
 }
 
+/// Whether a robot's file is a URDF by its name.
+#[must_use]
+pub(crate) fn is_urdf(path: &Path) -> bool {
+    matches!(Format::of(path), Ok(Format::Urdf))
+}
+
+/// The robot of a table with another standing pose and other rotors, where they are given.
+fn adapted(mut robot: Robot, path: &Path, options: &UrdfOptions) -> Result<Robot, RobotError> {
+    let names = &table::NAMES;
+    let check = Check { path, names };
+    let joints = robot.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    for (joint, armature_kg_m2) in joints.zip(options.armature_kg_m2.iter().flatten()) {
+        let key = format!("{} ({})", names.armature, joint.name);
+        check.not_negative(&key, *armature_kg_m2, "an armature")?;
+        joint.armature_kg_m2 = *armature_kg_m2;
+    }
+    if let Some(standing) = &options.standing {
+        robot.standing_rad = standing::angles_rad(&check, &robot.legs, standing)?;
+        robot.base_height_m = standing::height_m(&robot.legs, &robot.standing_rad);
+        check.positive(
+            "standing",
+            robot.base_height_m,
+            "the height of the pelvis above the soles",
+        )?;
+    }
+    Ok(robot)
+}
+
 impl Robot {
     /// Reads a robot: a joint table (`.toml`) or a URDF (`.urdf`, with the default [`UrdfOptions`]).
     ///
@@ -74,13 +104,14 @@ impl Robot {
         Self::parse_with(text, path, &UrdfOptions::default())
     }
 
-    /// The same with what a URDF does not say; a joint table has no use for it.
+    /// The same with what a URDF does not say. Of a joint table, which says the rest itself, the standing pose and the
+    /// inertias of the rotors are replaced where they are given.
     ///
     /// # Errors
     /// As [`Robot::load`].
     pub fn parse_with(text: &str, path: &Path, options: &UrdfOptions) -> Result<Self, RobotError> {
         match Format::of(path)? {
-            Format::Table => table::parse(text, path),
+            Format::Table => adapted(table::parse(text, path)?, path, options),
             Format::Urdf => urdf::parse(text, path, options),
         }
     }

@@ -12,14 +12,16 @@
 mod check;
 pub mod dynamics;
 mod error;
+pub mod inverse;
 pub mod kinematics;
 mod load;
+mod standing;
 mod structure;
 pub mod table;
 pub mod urdf;
 pub mod wrench;
 
 pub use error::RobotError;
-pub(crate) use load::{G1, G1_PATH};
+pub(crate) use load::{G1, G1_PATH, is_urdf};
 pub use structure::{Body, Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot};
-pub use urdf::UrdfOptions;
+pub use urdf::{Soles, Standing, UrdfOptions};

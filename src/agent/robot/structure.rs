@@ -120,6 +120,13 @@ impl Body {
     pub fn joined(&self, other: &Self) -> Self {
         let mass_kg = self.mass_kg + other.mass_kg;
         let apart = other.com_m - self.com_m;
+        // Two bodies without mass have no common centre.
+        if mass_kg == 0.0 {
+            return Self {
+                inertia_kg_m2: self.inertia_kg_m2 + other.inertia_kg_m2,
+                ..*self
+            };
+        }
         let reduced_kg = self.mass_kg * other.mass_kg / mass_kg;
         let spread =
             Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::Path;
 
-const NAMES: Names = Names {
+pub(super) const NAMES: Names = Names {
     mass: "mass",
     com: "com",
     inertia: "inertia",

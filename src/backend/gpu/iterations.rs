@@ -70,6 +70,7 @@ impl Shape {
         let (team, switches) = (self.team as u64, lists.switches() as u64);
         let turbulences = lists.turbulence_entries.len() as u64;
         let (noises, vortices) = (lists.noise_entries.len() as u64, lists.vortices as u64);
+        let frictions = lists.frictions as u64;
         let if_there = |is_there: bool, iterations: u64| if is_there { iterations } else { 0 };
         // A loop looks at its condition once more than it runs.
         let passes = |count: u64| count + 1;
@@ -86,9 +87,10 @@ impl Shape {
             + (bursts + noises) * random
             + evaluate
             + passes(switches);
-        // A stage: the sum over the team, the jets of the others, what is measured of the past.
+        // A stage: the sum over the team, frictions, the jets of the others, what is measured of the past.
         let coupled = self.coupling != Coupling::None;
         let stage = if_there(coupled, passes(team))
+            + if_there(frictions > 0, passes(frictions))
             + if_there(vortices > 0, passes(vortices) + vortices * passes(team))
             + passes(rings);
         // Taking in the start of a step: what is measured, and the rings of commands and of measurements.

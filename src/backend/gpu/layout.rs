@@ -6,6 +6,7 @@ use crate::campaign::{AgentGroup, Time};
 use crate::draw::Episode;
 use crate::model::ChannelSample;
 use crate::model::episode::AgentOutcome;
+use crate::model::exogenous::friction::Friction;
 use crate::model::exogenous::lists::{Item, LISTS, Oscillation};
 use crate::model::inputs::{ChannelInputs, LaneBlock, Selection};
 use crate::model::metric::{ChannelOutcome, Extremes, Metrics, Sums};
@@ -38,6 +39,8 @@ const FIXED_WORDS: usize = 9;
 const SWITCH_WORDS: usize = 4;
 /// Words of a turbulence: keep, cross, noise (three), output (two), states at the start (two).
 const TURBULENCE_WORDS: usize = 9;
+/// Words of a friction: Coulomb's part, 1 / smoothing, the viscous part.
+const FRICTION_WORDS: usize = 3;
 /// Words of a vortex: force, 1 / radius, 2 / length.
 const VORTEX_WORDS: usize = 3;
 /// Words of a channel's memory, where it has one: last command, x and x' as last measured, feedback that is held, the
@@ -66,6 +69,7 @@ impl<'l> Layout<'l> {
             + 3 * waves
             + rings
             + TURBULENCE_WORDS * turbulences
+            + FRICTION_WORDS * self.lists.frictions
             + VORTEX_WORDS * self.lists.vortices
     }
 
@@ -98,6 +102,7 @@ impl<'l> Layout<'l> {
         let rings = waves + 3 * n_waves;
         let noises = lists.noise_entries.len();
         let turbulences = lists.turbulence_entries.len();
+        let frictions = rings + n_rings + TURBULENCE_WORDS * turbulences;
         let mut named: Vec<(String, usize)> = [
             ("EPISODE", 0),
             ("INTEGRAL", 1),
@@ -113,11 +118,13 @@ impl<'l> Layout<'l> {
             ("WAVES", waves),
             ("RINGS", rings),
             ("TURBULENCES", rings + n_rings),
-            ("VORTICES", rings + n_rings + TURBULENCE_WORDS * turbulences),
+            ("FRICTIONS", frictions),
+            ("VORTICES", frictions + FRICTION_WORDS * lists.frictions),
             ("DRAWN_WORDS", self.drawn()),
             ("N_SWITCHES", lists.switches()),
             ("N_WAVES", n_waves),
             ("N_TURBULENCES", turbulences),
+            ("N_FRICTIONS", lists.frictions),
             ("N_VORTICES", lists.vortices),
             ("FAILED", 0),
             ("OUTSIDE", 1),
@@ -309,6 +316,14 @@ pub(crate) fn drawn<const NC: usize>(
         let fixed = [filter.keep, filter.cross].into_iter();
         let numbers = fixed.chain(filter.noise).chain(filter.output);
         words.extend(numbers.chain(turbulence.state[c]).map(f32::to_bits));
+    }
+    for friction in &signals.frictions {
+        let Friction {
+            coulomb,
+            inverse_smoothing,
+            viscous,
+        } = friction[c];
+        words.extend([coulomb, inverse_smoothing, viscous].map(f32::to_bits));
     }
     for vortex in &condition.vortices {
         let numbers = [vortex.force, vortex.inverse_radius, vortex.inverse_length];

@@ -12,6 +12,8 @@ pub(crate) struct Lists {
     /// The campaign's number of each noise and of each turbulence.
     pub(crate) noise_entries: Vec<u32>,
     pub(crate) turbulence_entries: Vec<u32>,
+    /// How many frictions there are.
+    pub(crate) frictions: usize,
     /// How many kinds of jets an agent feels.
     pub(crate) vortices: usize,
     /// The campaign's number of each burst, and whether it hits all channels of an agent together.
@@ -52,6 +54,7 @@ impl Lists {
             counts: signals.lists.counts(),
             noise_entries,
             turbulence_entries: signals.turbulences.iter().map(|of| of.entry).collect(),
+            frictions: signals.frictions.len(),
             vortices,
             bursts,
             rings,

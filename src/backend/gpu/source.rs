@@ -33,13 +33,14 @@ const BIPED: [&str; 2] = [
     include_str!("../../../shaders/plant_biped.wgsl"),
 ];
 /// The files that build on a plant.
-const ABOVE: [&str; 9] = [
+const ABOVE: [&str; 10] = [
     include_str!("../../../shaders/window.wgsl"),
     include_str!("../../../shaders/delay_line.wgsl"),
     include_str!("../../../shaders/noise.wgsl"),
     include_str!("../../../shaders/command_path.wgsl"),
     include_str!("../../../shaders/exogenous.wgsl"),
     include_str!("../../../shaders/metric.wgsl"),
+    include_str!("../../../shaders/friction.wgsl"),
     include_str!("../../../shaders/vortex.wgsl"),
     include_str!("../../../shaders/team.wgsl"),
     include_str!("../../../shaders/episode.wgsl"),

@@ -28,6 +28,12 @@ table_and_block! {
         phase_rad,
         /// Ground reaction: share of the series that acts (default 1).
         scale,
+        /// Friction: Coulomb's part, which does not depend on the speed, N or N m.
+        coulomb,
+        /// Friction: viscous part, N s/m or N m s/rad (default 0).
+        viscous,
+        /// Friction: the rate within which Coulomb's part changes its sign, m/s or rad/s (default 0.05).
+        smoothing_rate,
         /// Gust: its largest speed along the channel, m/s.
         speed_m_s,
         /// Gust and turbulence: drag per speed, N s/m.

@@ -14,7 +14,9 @@ pub(super) use parameters::Parameters;
 pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
 pub use tune::{Texts, TuneFile};
 pub(super) use value::in_toml;
-pub use value::{ChannelsFile, DistributionFile, NormalFile, Numbers, TruncatedNormalFile, Value};
+pub use value::{
+    ChannelsFile, DistributionFile, NormalFile, Numbers, TruncatedNormalFile, Value, WordOr,
+};
 
 use crate::agent::ActuationKind;
 use crate::util::fixed_list::List;
@@ -55,14 +57,19 @@ pub struct AgentFile {
     pub pelvis: Option<String>,
     /// URDF: the first joint of the left leg (default: the one at y > 0 of the pelvis).
     pub left_hip: Option<String>,
+    /// URDF: the first joint of the right leg (default: the other one).
+    pub right_hip: Option<String>,
     /// URDF: moving joints that are held at zero (default: all outside the legs).
     pub locked: Option<Vec<String>>,
-    /// URDF: inertia of each joint's rotor as seen from the joint, kg m^2 (default: that of `<dynamics armature>`, else
-    /// 0.01).
-    pub armature_kg_m2: Option<f64>,
-    /// URDF: standing pose, the angles of the left leg's joints, then of the right one's, rad (default: zero, or the
-    /// nearest angle that a joint can reach). The soles are level in it.
-    pub standing_rad: Option<List<f64, 12>>,
+    /// Inertia of each joint's rotor as seen from the joint, kg m^2: one for all, or a list, the left leg's first
+    /// (default: that of the robot's file, else 0.01).
+    pub armature_kg_m2: Option<Numbers>,
+    /// Standing pose: the angles of the left leg's joints, then of the right one's, rad, or "bent", a pose that the
+    /// program finds (default: that of a table; of a URDF zero, or the nearest angle that a joint can reach).
+    pub standing: Option<WordOr<StandingFile, List<f64, 12>>>,
+    /// URDF: two links whose frames are those of the left and right sole, z up, or "standing": the soles are level in
+    /// the standing pose (default: that, where angles are given, else level at q = 0).
+    pub sole: Option<WordOr<SoleFile, List<String, 2>>>,
     /// True mass over modelled mass (default 1); a biped's M and H as a whole.
     pub mass_scale: Option<Value>,
     /// True inertia over modelled inertia (default 1).
@@ -85,6 +92,22 @@ pub struct AgentFile {
     pub max_torque_n_m: Option<f64>,
     /// Largest commanded roll and pitch, rad (default 1; thrust only).
     pub max_tilt_rad: Option<f64>,
+}
+
+/// A standing pose by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StandingFile {
+    /// Knees bent, feet level below the hips.
+    Bent,
+}
+
+/// A way to find the soles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SoleFile {
+    /// Level in the standing pose.
+    Standing,
 }
 
 /// The plants.
@@ -119,7 +142,7 @@ pub struct ReferenceFile {
     /// Sinusoid and walk: blocks that override the keys above, one per agent.
     #[serde(default, deserialize_with = "some_tables")]
     pub agents: Option<Vec<ReferenceBlock>>,
-    /// Walk: how the robot walks (default: a slow walk of the Unitree G1).
+    /// Walk: how the robot walks (default: a slow walk of the Unitree G1, scaled to the robot).
     #[serde(default, deserialize_with = "some_table")]
     pub gait: Option<GaitFile>,
     /// Waypoints: offset of each agent from the points, m.
@@ -162,27 +185,27 @@ pub struct ReferenceBlock {
     pub start_s: Option<f64>,
 }
 
-/// `[reference.gait]`; the defaults are a slow walk of the Unitree G1.
+/// `[reference.gait]`; the defaults are a slow walk of the Unitree G1, whose lengths are scaled to other robots.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaitFile {
     /// Sampling period of the plan, s (default 0.01).
     pub sampling_s: Option<f64>,
-    /// Largest step length, m (default 0.2).
+    /// Largest step length, m (default 0.2 for the G1).
     pub step_length_m: Option<f64>,
-    /// How far a swinging ankle is raised, m (default 0.05).
+    /// How far a swinging ankle is raised, m (default 0.05 for the G1).
     pub step_height_m: Option<f64>,
     /// From touch-down to touch-down, s (default 0.9).
     pub step_period_s: Option<f64>,
     /// Part of the period in which both feet stand, s (default 0.15).
     pub double_support_s: Option<f64>,
-    /// Distance of either foot from the line, m (default 0.1185).
+    /// Distance of either foot from the line, m (default 0.1185 for the G1).
     pub foot_offset_m: Option<f64>,
-    /// Height of the pelvis above the ground, m (default 0.74).
+    /// Height of the pelvis above the ground, m (default 0.74 for the G1).
     pub pelvis_height_m: Option<f64>,
-    /// Height of an ankle above its foothold, m (default 0.035).
+    /// Height of an ankle above its foothold, m (default 0.035 for the G1).
     pub ankle_height_m: Option<f64>,
-    /// How far ahead of the ankle the zero moment point is to lie under a foot, m (default 0.03).
+    /// How far ahead of the ankle the zero moment point is to lie under a foot, m (default 0.03 for the G1).
     pub zmp_ahead_m: Option<f64>,
     /// Standing before the first step, s (default 1.2).
     pub standing_before_s: Option<f64>,

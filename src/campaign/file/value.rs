@@ -95,6 +95,16 @@ pub enum ChannelsFile {
     Others(Vec<String>),
 }
 
+/// A word, or a list in its place.
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum WordOr<W, L> {
+    /// One of some words.
+    Word(W),
+    /// A list.
+    List(L),
+}
+
 /// A value as a campaign file would say it.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -217,6 +227,18 @@ pub(super) fn some_tables<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     tables(deserializer).map(Some)
 }
 
+/// The words of an enum: serde tells them only to whom takes none of them.
+fn words<'de, T: Deserialize<'de>>() -> String {
+    let none: Result<T, PlainError> = T::deserialize("".into_deserializer());
+    let said = none.err().map(|error| error.to_string());
+    let words = said
+        .as_deref()
+        .and_then(|said| said.split_once(", expected "));
+    words
+        .map_or("a word in quotes", |(_, words)| words)
+        .to_string()
+}
+
 /// One of several words; anything else is refused with all of them.
 pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
@@ -225,19 +247,32 @@ pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     impl<'de, T: Deserialize<'de>> Visitor<'de> for WordVisitor<T> {
         type Value = T;
         fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-            // Serde tells the words of an enum only to whom takes none of them.
-            let none: Result<T, PlainError> = T::deserialize("".into_deserializer());
-            let said = none.err().map(|error| error.to_string());
-            let words = said
-                .as_deref()
-                .and_then(|said| said.split_once(", expected "));
-            formatter.write_str(words.map_or("a word in quotes", |(_, words)| words))
+            formatter.write_str(&words::<T>())
         }
         fn visit_str<E: Error>(self, word: &str) -> Result<T, E> {
             T::deserialize(word.into_deserializer())
         }
     }
     deserializer.deserialize_any(WordVisitor(PhantomData))
+}
+
+impl<'de, W: Deserialize<'de>, L: Deserialize<'de>> Deserialize<'de> for WordOr<W, L> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct WordOrVisitor<W, L>(PhantomData<(W, L)>);
+        impl<'de, W: Deserialize<'de>, L: Deserialize<'de>> Visitor<'de> for WordOrVisitor<W, L> {
+            type Value = WordOr<W, L>;
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                write!(formatter, "{} or a list", words::<W>())
+            }
+            fn visit_str<E: Error>(self, word: &str) -> Result<Self::Value, E> {
+                W::deserialize(word.into_deserializer()).map(WordOr::Word)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+                L::deserialize(SeqAccessDeserializer::new(list)).map(WordOr::List)
+            }
+        }
+        deserializer.deserialize_any(WordOrVisitor(PhantomData))
+    }
 }
 
 /// A word that may be absent.

@@ -1,6 +1,6 @@
 //! `[agent]`.
 
-use crate::agent::robot::{self, JOINTS, Robot, RobotError, UrdfOptions};
+use crate::agent::robot::{self, JOINTS, Robot, RobotError, Soles, Standing, UrdfOptions};
 use crate::agent::{ActuationKind, Agent, Biped, RobotFile, Uav};
 use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
@@ -20,9 +20,9 @@ fn of_urdf(file: &AgentFile) -> [(&'static str, bool); 5] {
     [
         ("pelvis", file.pelvis.is_some()),
         ("left_hip", file.left_hip.is_some()),
+        ("right_hip", file.right_hip.is_some()),
         ("locked", file.locked.is_some()),
-        ("armature_kg_m2", file.armature_kg_m2.is_some()),
-        ("standing_rad", file.standing_rad.is_some()),
+        ("sole", file.sole.is_some()),
     ]
 }
 
@@ -35,7 +35,11 @@ impl Check<'_> {
     ) -> Result<Agent, CampaignError> {
         match file.kind {
             AgentKind::Uav => {
-                let of_bipeds = [("robot", file.robot.is_some())];
+                let of_bipeds = [
+                    ("robot", file.robot.is_some()),
+                    ("armature_kg_m2", file.armature_kg_m2.is_some()),
+                    ("standing", file.standing.is_some()),
+                ];
                 self.unused("agent", "uav", &[&of_bipeds[..], &of_urdf(file)].concat())?;
                 self.uav(file).map(Agent::Uav)
             }
@@ -78,21 +82,18 @@ impl Check<'_> {
             }
         };
         let options = self.urdf_options(file, &path)?;
-        let file = RobotFile { path, text };
+        let own = RobotFile { path, text };
         Ok(Biped {
             actuation,
-            robot: Robot::parse_with(&file.text, &file.path, &options).map_err(Box::new)?,
-            file,
+            robot: Robot::parse_with(&own.text, &own.path, &options).map_err(Box::new)?,
+            file: own,
         })
     }
 
-    /// What a campaign says of a URDF; a joint table says it itself.
+    /// What a campaign says of a robot's file. What only a URDF leaves open is refused of a table.
     fn urdf_options(&self, file: &AgentFile, path: &Path) -> Result<UrdfOptions, CampaignError> {
         let given = of_urdf(file).into_iter().find(|(_, given)| *given);
-        let is_urdf = path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"));
-        if let (Some((key, _)), false) = (given, is_urdf) {
+        if let (Some((key, _)), false) = (given, robot::is_urdf(path)) {
             return Err(self.invalid(
                 format!("agent.{key}"),
                 "given",
@@ -100,19 +101,27 @@ impl Check<'_> {
                 "remove it, or write it into the table",
             ));
         }
-        let mut options = UrdfOptions {
+        let armature_kg_m2 = file.armature_kg_m2.as_ref().map(|numbers| {
+            let key = "agent.armature_kg_m2";
+            let list = self.numbers_of(key, Some(numbers), 0.0, Bounds::NonNegative, JOINTS)?;
+            Ok::<_, CampaignError>(std::array::from_fn(|joint| list[joint]))
+        });
+        Ok(UrdfOptions {
             pelvis: file.pelvis.clone(),
             left_hip: file.left_hip.clone(),
+            right_hip: file.right_hip.clone(),
             locked: file.locked.clone().unwrap_or_default(),
+            armature_kg_m2: armature_kg_m2.transpose()?,
+            standing: file.standing.as_ref().map(|standing| match standing {
+                WordOr::Word(StandingFile::Bent) => Standing::Bent,
+                WordOr::List(angles) => Standing::Angles(angles.0),
+            }),
+            soles: file.sole.as_ref().map(|sole| match sole {
+                WordOr::Word(SoleFile::Standing) => Soles::Standing,
+                WordOr::List(frames) => Soles::Frames(frames.0.clone()),
+            }),
             ..UrdfOptions::default()
-        };
-        if let Some(armature_kg_m2) = file.armature_kg_m2 {
-            let key = "agent.armature_kg_m2";
-            let armature_kg_m2 = self.number(key, armature_kg_m2, Bounds::NonNegative)?;
-            options.armature_kg_m2 = Some([armature_kg_m2; JOINTS]);
-        }
-        options.standing_rad = file.standing_rad.as_ref().map(|list| list.0);
-        Ok(options)
+        })
     }
 
     /// A robot's file that is none, by the key that names it; what is wrong within one is said with the file's own

@@ -7,7 +7,7 @@ use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::parameter::Bounds;
 use crate::reference::path::{DEFAULT_STEP_M, PathLimits};
-use crate::reference::walk::{Foot, Gait, WalkError};
+use crate::reference::walk::{Foot, Gait, WalkError, nearest};
 use crate::reference::{AgentWalk, Reference, Sinusoid, Walk, WaypointPath};
 use std::sync::Arc;
 
@@ -206,12 +206,12 @@ impl Check<'_> {
         file: &GaitFile,
         robot: &Robot,
     ) -> Result<Walk, CampaignError> {
-        let gait = gait(file);
-        match file.com_offset_m {
-            None => Walk::plan(robot, points, &gait),
-            Some(offset_m) => Walk::plan_with_com_offset(robot, points, &gait, offset_m.0),
-        }
-        .map_err(|error| match error {
+        let gait = gait(file, &Gait::of(robot));
+        let plan = |gait: &Gait| match &file.com_offset_m {
+            None => Walk::plan(robot, points, gait),
+            Some(offset_m) => Walk::plan_with_com_offset(robot, points, gait, offset_m.0),
+        };
+        plan(&gait).map_err(|error| match error {
             WalkError::Gait {
                 name,
                 value,
@@ -226,7 +226,9 @@ impl Check<'_> {
             other => {
                 let text = other.to_string();
                 let (limit, remedy) = text.rsplit_once("; ").unwrap_or((&text, "correct it"));
-                self.invalid(key, format!("{points:?}"), limit, remedy)
+                let tried = other.is_of_the_gait().then(|| walkable(&gait, plan));
+                let remedy = tried.unwrap_or_else(|| remedy.to_string());
+                self.invalid(key, format!("{points:?}"), limit, &remedy)
             }
         })
     }
@@ -293,8 +295,25 @@ impl Check<'_> {
     }
 }
 
-/// The shipped gait with the file's overrides; its numbers are checked when a walk is planned.
-fn gait(file: &GaitFile) -> Gait {
+/// The nearest gait that was found to give a walk, as a remedy.
+fn walkable(gait: &Gait, plan: impl FnMut(&Gait) -> Result<Walk, WalkError>) -> String {
+    let Some(found) = nearest(gait, plan) else {
+        return "no other height of the pelvis and no shorter or slower steps were found that help: take a line with wider bends, or \
+                say how the robot stands (agent.standing, agent.sole)"
+            .to_string();
+    };
+    let changed = found.unlike(gait).into_iter();
+    let changed: Vec<String> = changed
+        .map(|(name, value)| format!("{name} = {}", in_toml(value)))
+        .collect();
+    format!(
+        "the nearest gait that can be walked has {} in [reference.gait]",
+        changed.join(", ")
+    )
+}
+
+/// The robot's own gait with the file's overrides; its numbers are checked when a walk is planned.
+fn gait(file: &GaitFile, own: &Gait) -> Gait {
     let GaitFile {
         sampling_s,
         step_length_m,
@@ -311,24 +330,23 @@ fn gait(file: &GaitFile) -> Gait {
         smoothing_step_m,
         com_offset_m: _,
     } = *file;
-    let g1 = Gait::G1;
     Gait {
-        sampling_s: sampling_s.unwrap_or(g1.sampling_s),
-        step_length_m: step_length_m.unwrap_or(g1.step_length_m),
-        step_height_m: step_height_m.unwrap_or(g1.step_height_m),
-        step_period_s: step_period_s.unwrap_or(g1.step_period_s),
-        double_support_s: double_support_s.unwrap_or(g1.double_support_s),
-        foot_offset_m: foot_offset_m.unwrap_or(g1.foot_offset_m),
-        pelvis_height_m: pelvis_height_m.unwrap_or(g1.pelvis_height_m),
-        ankle_height_m: ankle_height_m.unwrap_or(g1.ankle_height_m),
-        zmp_ahead_m: zmp_ahead_m.unwrap_or(g1.zmp_ahead_m),
-        standing_before_s: standing_before_s.unwrap_or(g1.standing_before_s),
-        standing_after_s: standing_after_s.unwrap_or(g1.standing_after_s),
+        sampling_s: sampling_s.unwrap_or(own.sampling_s),
+        step_length_m: step_length_m.unwrap_or(own.step_length_m),
+        step_height_m: step_height_m.unwrap_or(own.step_height_m),
+        step_period_s: step_period_s.unwrap_or(own.step_period_s),
+        double_support_s: double_support_s.unwrap_or(own.double_support_s),
+        foot_offset_m: foot_offset_m.unwrap_or(own.foot_offset_m),
+        pelvis_height_m: pelvis_height_m.unwrap_or(own.pelvis_height_m),
+        ankle_height_m: ankle_height_m.unwrap_or(own.ankle_height_m),
+        zmp_ahead_m: zmp_ahead_m.unwrap_or(own.zmp_ahead_m),
+        standing_before_s: standing_before_s.unwrap_or(own.standing_before_s),
+        standing_after_s: standing_after_s.unwrap_or(own.standing_after_s),
         first_foot: match first_foot {
-            None => g1.first_foot,
+            None => own.first_foot,
             Some(FootFile::Left) => Foot::Left,
             Some(FootFile::Right) => Foot::Right,
         },
-        smoothing_step_m: smoothing_step_m.unwrap_or(g1.smoothing_step_m),
+        smoothing_step_m: smoothing_step_m.unwrap_or(own.smoothing_step_m),
     }
 }

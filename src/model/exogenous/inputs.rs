@@ -1,6 +1,7 @@
 //! Everything that acts on one agent's channels from outside, and what the loop keeps of it.
 
 use super::actuator::{Actuator, HeldCommand};
+use super::friction::Friction;
 use super::lists::SignalLists;
 use super::noise::Turbulence;
 use crate::model::lanes::Lane;
@@ -21,6 +22,7 @@ pub(crate) struct ExogenousInputs<L: Lane, const NC: usize> {
 
     pub(crate) lists: SignalLists<L, NC>,
     pub(crate) turbulences: Vec<Turbulence<L, NC>>,
+    pub(crate) frictions: Vec<[Friction<L>; NC]>,
 
     /// What of d1 and of f2 is held over this step.
     pub(crate) held_disturbance: [L; NC],
@@ -60,6 +62,7 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
             rises: false,
             lists: SignalLists::none(),
             turbulences: Vec::new(),
+            frictions: Vec::new(),
             held_disturbance: zero,
             held_sensor: zero,
             command: HeldCommand::sound(),

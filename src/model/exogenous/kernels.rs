@@ -2,6 +2,7 @@
 //! and number of channels, and not into every loop of every plant and controller.
 
 use super::delay_line::Moment;
+use super::friction::{self, Friction};
 use super::inputs::ExogenousInputs;
 use super::vortex::{self, Vortex};
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};
@@ -102,6 +103,32 @@ impl<L: Lane, const NC: usize> Kernel for Distortion<'_, L, NC> {
             off[c] = [seen - position[c], seen_rate - velocity[c]];
         }
         off
+    }
+}
+
+/// [`friction::friction_force`] of every channel.
+#[inline(always)]
+pub(crate) fn friction_forces<L: Lane, const NC: usize>(
+    frictions: &[[Friction<L>; NC]],
+    rates: &[L; NC],
+) -> [L; NC] {
+    L::dispatch(FrictionForces { frictions, rates })
+}
+
+struct FrictionForces<'a, L, const NC: usize> {
+    frictions: &'a [[Friction<L>; NC]],
+    rates: &'a [L; NC],
+}
+
+impl<L: Lane, const NC: usize> Kernel for FrictionForces<'_, L, NC> {
+    type Output = [L; NC];
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let mut forces = *self.rates;
+        for (c, force) in forces.iter_mut().enumerate() {
+            *force = friction::friction_force(self.frictions, c, self.rates[c]);
+        }
+        forces
     }
 }
 

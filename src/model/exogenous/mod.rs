@@ -5,6 +5,7 @@ mod command_path;
 pub(crate) mod delay_line;
 pub(crate) mod dryden;
 pub(crate) mod evaluation;
+pub(crate) mod friction;
 mod inputs;
 pub(crate) mod kernels;
 pub(crate) mod lists;

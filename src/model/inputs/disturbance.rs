@@ -4,13 +4,15 @@
 use super::block::{LaneBlock, Selection};
 use crate::agent::{FIRST_ATTITUDE, HEIGHT};
 use crate::campaign::kinds::{
-    AIRSPEED, ALTITUDE, AMPLITUDE, FREQUENCY, GUST_DURATION, GUST_ONSET, GUST_SPEED, JET_FORCE,
-    JET_LENGTH, JET_RADIUS, MEAN_WIND, PHASE, SERIES_SHARE, WIND_GAIN,
+    AIRSPEED, ALTITUDE, AMPLITUDE, COULOMB, FREQUENCY, GUST_DURATION, GUST_ONSET, GUST_SPEED,
+    JET_FORCE, JET_LENGTH, JET_RADIUS, MEAN_WIND, PHASE, SERIES_SHARE, SMOOTHING_RATE, VISCOUS,
+    WIND_GAIN,
 };
 use crate::campaign::{Disturbance, DisturbanceKind, Parameter};
 use crate::draw::{AgentDraw, member};
 use crate::model::exogenous::ExogenousInputs;
 use crate::model::exogenous::dryden::{Dryden, at_rest};
+use crate::model::exogenous::friction::Friction;
 use crate::model::exogenous::lists::Oscillation;
 use crate::model::exogenous::noise::{Filter, Turbulence};
 use crate::model::exogenous::vortex::Vortex;
@@ -95,6 +97,7 @@ impl LaneBlock<'_> {
                         .push(self.turbulence(agent, disturbance, index, first));
                 }
             }
+            DisturbanceKind::Friction => signals.frictions.extend(friction(&values, entries)),
             DisturbanceKind::Sine | DisturbanceKind::RotorVortex => {}
         }
     }
@@ -219,4 +222,23 @@ impl LaneBlock<'_> {
             state: at_start.map(|state| state.map(|values| L::load(&values))),
         }
     }
+}
+
+/// Friction of every channel, if it may act (or does) in some lane.
+fn friction<L: Lane, const NC: usize>(
+    values: &dyn Fn(&Parameter, usize) -> [f64; MAX_WIDTH],
+    entries: Selection,
+) -> Option<[Friction<L>; NC]> {
+    let slows = |c: usize| {
+        let both = [values(&COULOMB, c), values(&VISCOUS, c)];
+        both.as_flattened().iter().any(|part| *part != 0.0)
+    };
+    let acts = entries == Selection::Possible || (0..NC).any(slows);
+    acts.then(|| {
+        std::array::from_fn(|c| Friction {
+            coulomb: L::load(&values(&COULOMB, c)),
+            inverse_smoothing: L::load(&values(&SMOOTHING_RATE, c).map(f64::recip)),
+            viscous: L::load(&values(&VISCOUS, c)),
+        })
+    })
 }

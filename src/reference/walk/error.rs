@@ -166,3 +166,19 @@ pub enum WalkError {
         max_rad: f64,
     },
 }
+
+impl WalkError {
+    /// Whether another gait along the same line may do.
+    #[must_use]
+    pub fn is_of_the_gait(&self) -> bool {
+        matches!(
+            self,
+            Self::FeetTooClose { .. }
+                | Self::Falls { .. }
+                | Self::OutOfReach { .. }
+                | Self::NoPose { .. }
+                | Self::StraightKnee { .. }
+                | Self::JointLimit { .. }
+        )
+    }
+}

@@ -2,6 +2,9 @@
 
 use super::error::WalkError;
 use super::foot::Foot;
+use crate::agent::robot::inverse::reach_m;
+use crate::agent::robot::kinematics::{by_leg, leg_pose};
+use crate::agent::robot::{LEFT, RIGHT, Robot};
 
 /// How a robot walks. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +62,32 @@ impl Gait {
         smoothing_step_m: 2.0,
     };
 
+    /// [`Gait::G1`] for a robot of another size: lengths grow with the reach of its legs, the feet stand where the
+    /// ankles are in its standing pose, and the pelvis is as much above the hips as the robot's own. Times stay: steps
+    /// of the same time are slower for a small robot and quicker for a large one, whose pendulum is slower.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        let Ok(g1) = Robot::g1() else { return Self::G1 };
+        let (own, its) = (Size::of(robot), Size::of(&g1));
+        let scale = own.reach_m / its.reach_m;
+        let hip_to_ankle_m =
+            Self::G1.pelvis_height_m - Self::G1.ankle_height_m - its.pelvis_above_hips_m;
+        let ankle_height_m = Self::G1.ankle_height_m * scale;
+        Self {
+            step_length_m: Self::G1.step_length_m * scale,
+            step_height_m: Self::G1.step_height_m * scale,
+            // Sums of differences, so that the G1's own come out to the last digit.
+            foot_offset_m: Self::G1.foot_offset_m + (own.ankle_offset_m - its.ankle_offset_m),
+            pelvis_height_m: Self::G1.pelvis_height_m
+                + (own.pelvis_above_hips_m - its.pelvis_above_hips_m)
+                + hip_to_ankle_m * (scale - 1.0)
+                + (ankle_height_m - Self::G1.ankle_height_m),
+            ankle_height_m,
+            zmp_ahead_m: Self::G1.zmp_ahead_m * scale,
+            ..Self::G1
+        }
+    }
+
     /// Refuses numbers that cannot be or that contradict each other.
     ///
     /// # Errors
@@ -85,6 +114,23 @@ impl Gait {
             }
         }
         Ok(())
+    }
+
+    /// The numbers that differ from those of another gait, each with its name and this gait's value; the foot that
+    /// steps first is none.
+    #[must_use]
+    pub fn unlike(&self, other: &Self) -> Vec<(&'static str, f64)> {
+        let both = self.numbers().into_iter().zip(other.numbers());
+        both.filter(|(own, other)| own != other)
+            .map(|(own, _)| own)
+            .collect()
+    }
+
+    /// Its numbers, each with its name.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+        let numbers = self.ranges().into_iter();
+        numbers.map(|(name, value, _)| (name, value)).collect()
     }
 
     /// Wide enough for any biped, narrow enough that nothing overflows.
@@ -139,5 +185,28 @@ impl Gait {
                 "raise the pelvis or lower the step",
             ),
         ]
+    }
+}
+
+/// What of a robot decides how it walks.
+struct Size {
+    /// How far the shorter leg reaches from its hip, m.
+    reach_m: f64,
+    /// Half the distance between the ankles, m.
+    ankle_offset_m: f64,
+    /// How far the hips are below the pelvis frame, m.
+    pelvis_above_hips_m: f64,
+}
+
+impl Size {
+    fn of(robot: &Robot) -> Self {
+        let q_rad = by_leg(&robot.standing_rad);
+        let [left, right] = [LEFT, RIGHT].map(|leg| leg_pose(&robot.legs[leg], &q_rad[leg]));
+        let hips_m = [&left, &right].map(|leg| leg.origins_m[0].z);
+        Self {
+            reach_m: robot.legs.iter().map(reach_m).fold(f64::INFINITY, f64::min),
+            ankle_offset_m: 0.5 * (left.ankle_m().y - right.ankle_m().y),
+            pelvis_above_hips_m: -0.5 * (hips_m[LEFT] + hips_m[RIGHT]),
+        }
     }
 }

@@ -6,27 +6,10 @@ use super::error::WalkError;
 use super::feet::Ankle;
 use super::foot::Foot;
 use super::gait::Gait;
+use crate::agent::robot::inverse::{KNEE, STRAIGHT_RAD, TOLERANCE, bent, reach_m, solve};
 use crate::agent::robot::kinematics::{by_leg, com_m, joined, leg_pose};
-use crate::agent::robot::{JOINTS, LEG_JOINTS, Leg, Robot};
+use crate::agent::robot::{JOINTS, Leg, Robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3, Vector6};
-use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Largest component of the pose error at the solution, m and rad.
-const TOLERANCE: f64 = 1e-12;
-/// A warm start takes three; the first pose, from the robot's standing one, some more.
-const MAX_ITERATIONS: u32 = 50;
-/// Largest turn of a joint in one iteration, rad: keeps the first pose from overshooting.
-const MAX_TURN_RAD: f64 = 0.5;
-/// Bends of the knee from which a pose is looked for, rad.
-const BENDS_RAD: [f64; 3] = [0.5, 1.0, 1.6];
-/// Rounds over the joints in the search for the reach of a leg.
-const SWEEPS: u32 = 40;
-/// Cosine of the angle between two axes about which joints turn alike.
-const ALIKE: f64 = 0.9;
-/// The fourth joint of a leg.
-const KNEE: usize = 3;
-/// Below it the joint rates that move the foot along the leg exceed ten times those of a bent one.
-const MIN_KNEE_BEND_RAD: f64 = 0.1;
 
 /// Joint angles of both legs, rad, for a pelvis upright at `pelvis` and `pelvis_height_m` and the
 /// two ankles, by Newton's method from `start_rad`.
@@ -138,46 +121,6 @@ fn of_leg(
     }
 }
 
-/// Poses with a bent knee, to either side as far as its range allows: the joints that turn about the same axis share
-/// the bend, so that the foot stays about level.
-fn bent(leg: &Leg) -> Vec<Vector6<f64>> {
-    let axes = leg_pose(leg, &Vector6::zeros()).axes;
-    let alike: Vec<f64> = axes.iter().map(|axis| axis.dot(&axes[KNEE])).collect();
-    let knee = &leg.joints[KNEE];
-    let bends = BENDS_RAD.iter().flat_map(|bend_rad| [*bend_rad, -bend_rad]);
-    let possible = bends.filter(|bend| (knee.q_min_rad..=knee.q_max_rad).contains(bend));
-    let pose = |bend_rad: f64| {
-        let others = alike.iter().enumerate();
-        let others = others.filter(|(joint, own)| *joint != KNEE && own.abs() > ALIKE);
-        let mut joints = Vector6::zeros();
-        joints[KNEE] = bend_rad;
-        for (joint, own) in others {
-            joints[joint] = -0.5 * bend_rad * own.signum();
-        }
-        joints
-    };
-    possible.map(pose).collect()
-}
-
-/// Newton's method on the six components of the pose error, in pelvis axes.
-fn solve(leg: &Leg, target: &Isometry3<f64>, start_rad: Vector6<f64>) -> Option<Vector6<f64>> {
-    let mut joints_rad = start_rad;
-    for _ in 0..MAX_ITERATIONS {
-        let pose = leg_pose(leg, &joints_rad);
-        let at = pose.ankle();
-        let shift = target.translation.vector - at.translation.vector;
-        let turn = (target.rotation * at.rotation.inverse()).scaled_axis();
-        let error = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
-        // Not-a-number is never within it.
-        if error.iter().all(|part| part.abs() <= TOLERANCE) {
-            return Some(joints_rad);
-        }
-        let step = pose.jacobian().lu().solve(&error)?;
-        joints_rad += step * (MAX_TURN_RAD / step.amax()).min(1.0);
-    }
-    None
-}
-
 /// Why no pose was found: the foothold is farther away than the leg reaches, or it is not.
 fn no_pose(leg: &Leg, foot: Foot, target: &Isometry3<f64>, t_s: f64) -> WalkError {
     let hip = leg.joints[0].placement.translation.vector;
@@ -219,39 +162,14 @@ fn share_found(leg: &Leg, target: &Isometry3<f64>, hip_m: Vector3<f64>) -> f64 {
     found
 }
 
-/// How far from the hip the joints of a leg can put its ankle, m. The square of the distance is a sine of each joint's
-/// angle, so that the best angle of one joint is known; they are improved in turn.
-fn reach_m(leg: &Leg) -> f64 {
-    let hip = leg.joints[0].placement.translation.vector;
-    let distance = |joints: &Vector6<f64>| (leg_pose(leg, joints).ankle_m() - hip).norm();
-    let mut joints = Vector6::zeros();
-    for joint in (0..SWEEPS).flat_map(|_| 0..LEG_JOINTS) {
-        let square = |angle_rad: f64| {
-            let mut tried = joints;
-            tried[joint] = angle_rad;
-            distance(&tried).powi(2)
-        };
-        let (at_zero, at_quarter, at_half) = (square(0.0), square(FRAC_PI_2), square(PI));
-        let middle = f64::midpoint(at_zero, at_half);
-        let best_rad = (at_quarter - middle).atan2(at_zero - middle);
-        let (low, high) = (leg.joints[joint].q_min_rad, leg.joints[joint].q_max_rad);
-        let within = [best_rad.clamp(low, high), low, high];
-        let best = within
-            .into_iter()
-            .max_by(|a, b| square(*a).total_cmp(&square(*b)));
-        joints[joint] = best.unwrap_or(best_rad);
-    }
-    distance(&joints)
-}
-
 fn check(leg: &Leg, joints_rad: &Vector6<f64>, t_s: f64) -> Result<(), WalkError> {
     let bend_rad = joints_rad[KNEE].abs();
-    if bend_rad < MIN_KNEE_BEND_RAD {
+    if bend_rad < STRAIGHT_RAD {
         return Err(WalkError::StraightKnee {
             t_s,
             joint: leg.joints[KNEE].name.clone(),
             bend_rad,
-            limit_rad: MIN_KNEE_BEND_RAD,
+            limit_rad: STRAIGHT_RAD,
         });
     }
     for (joint, &angle_rad) in leg.joints.iter().zip(joints_rad.iter()) {

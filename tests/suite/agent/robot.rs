@@ -2,11 +2,13 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `humanoids` | published robots, whole |
 //! | `reference` | kinematics, dynamics and ground reaction against independent numbers |
 //! | `physics` | energy, symmetry and inverses, which hold whatever the numbers |
 //! | `table` | the joint table: what it holds, what it refuses |
 //! | `urdf` | the same of the URDF reader, and that both agree |
 
+mod humanoids;
 mod physics;
 mod reference;
 mod table;

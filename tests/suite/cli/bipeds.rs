@@ -54,8 +54,8 @@ points_m = [[0.0, 0.0], [1.0, 0.0]] =>   :: reference.points_m (line 18) = absen
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0], [0.1, 0.0]] :: reference.points_m (line 20) ~ shorter than one step of 0.2 m; move its end or shorten the step
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0]] :: reference.points_m (line 20) = [[0.0, 0.0]] ~ needs at least 2; add
 [[0.0, 0.0], [1.0, 0.0]] => [[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]] :: at waypoint 1 the line turns by 180 degrees ~ spread the turn
-[synthesis]       => [reference.gait]\nstep_length_m = 0.6\n[synthesis] :: at 1.86 s no joint angles were found that put the right ankle ~ 0.662 m from the hip: ~ up to 0.65 ~ shorten the step
-[synthesis]       => [reference.gait]\npelvis_height_m = 0.8\n[synthesis] :: at 0.00 s no joint angles were found that put the left ankle ~ up to 0.65 ~ lower the pelvis
+[synthesis]       => [reference.gait]\nstep_length_m = 0.6\n[synthesis] :: at 1.86 s no joint angles were found that put the right ankle ~ 0.662 m from the hip: ~ up to 0.65 ~ the nearest gait that can be walked has step_length_m = 0.48, step_height_m = 0.04 in [reference.gait]
+[synthesis]       => [reference.gait]\npelvis_height_m = 0.8\n[synthesis] :: at 0.00 s no joint angles were found that put the left ankle ~ up to 0.65 ~ the nearest gait that can be walked has pelvis_height_m = 0.769 in [reference.gait]
 [synthesis]       => [reference.gait]\nstep_period_s = -1\n[synthesis] :: reference.gait.step_period_s (line 23) = -1.0: must lie between 0.001 and 100
 [synthesis]       => [reference.gait]\nstep_heigth_m = 0.1\n[synthesis] :: unknown key `step_heigth_m` ~ did you mean `step_height_m`?
 [synthesis]       => [reference.gait]\nfirst_foot = "both"\n[synthesis] :: unknown value `both` ~ `left` or `right`

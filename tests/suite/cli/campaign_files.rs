@@ -74,7 +74,7 @@ seed = 2026       => seed = -1           :: line 3 ~ -1 ~ expected a whole numbe
 seed = 2026       => seed = 18446744073709551616 :: integer `18446744073709551616`, expected a whole number from 0 to 18446744073709551615
 kind = "uav"      => kind = 3            :: line 13, column 8 ~ integer `3`, expected `uav` or `biped`
 "full"            => { full = 1 }        :: line 15, column 13 ~ a table, expected one of `full`, `thrust`, `limited`
-kind = "sine"     => kind = 3            :: integer `3`, expected one of `sine`, `constant`, `gust-1-cosine`
+kind = "sine"     => kind = 3            :: integer `3`, expected one of `sine`, `constant`, `friction`, `gust-1-cosine`
 { choice = [0.0, 1.0] } => { choice = [0.0, 1.0], per = 1 } :: integer `1`, expected one of `episode`, `agent`, `channel`
 kappa =           => kappa = true #      :: kappa = true ~ ^^^^ ~ a number, a list with one value per channel, or a distribution such as
 max_error = 1.5   => max_error = "big"   :: "big" ~ expected a number, or a list with one number per channel
@@ -296,7 +296,7 @@ fn a_list_of_fixed_length_takes_neither_more_nor_fewer_values() {
     let preset = "\"uav-paper\"";
     let synthesis = |key: &str| format!("{preset}\\nposition.{key} = LIST");
     let scale = "mass_scale = { uniform = [0.8, 1.2] }";
-    let cases: [(&str, String, &str, &[&str]); 9] = [
+    let cases: [(&str, String, &str, &[&str]); 10] = [
         (
             "\"full\"",
             "\"full\"\\ninertia_kg_m2 = LIST".into(),
@@ -305,9 +305,15 @@ fn a_list_of_fixed_length_takes_neither_more_nor_fewer_values() {
         ),
         (
             "\"full\"",
-            "\"full\"\\nstanding_rad = LIST".into(),
-            "standing_rad",
+            "\"full\"\\nstanding = LIST".into(),
+            "standing",
             &["0.1"; 12],
+        ),
+        (
+            "\"full\"",
+            "\"full\"\\nsole = LIST".into(),
+            "sole",
+            &["\"left\"", "\"right\""],
         ),
         (
             scale,

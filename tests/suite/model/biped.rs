@@ -15,8 +15,8 @@ mod limits;
 use crate::common::altered;
 use urts_mc::campaign::Campaign;
 
-/// Three robots that meet everything at once: coupling, the ground, sines, faults of sensors and actuators, a true mass
-/// of their own, and initial errors that torques at their limits must correct.
+/// Three robots that meet everything at once: coupling, the ground, friction, sines, faults of sensors and actuators, a
+/// true mass of their own, and initial errors that torques at their limits must correct.
 fn everything(actuation: &str) -> Campaign {
     let more = r#"[coupling]
 kappa = { uniform = [0.5, 1.0] }
@@ -30,6 +30,12 @@ phase_rad = { uniform = [0.0, 6.0] }
 [[disturbance]]
 kind = "ground-reaction"
 scale = 0.25
+
+[[disturbance]]
+kind = "friction"
+coulomb = [0.2, 0.4, 0.1, 0.3, 0.2, 0.1, 0.2, 0.4, 0.1, 0.3, 0.2, 0.1]
+viscous = { uniform = [0.0, 0.2] }
+smoothing_rate = 0.1
 
 [[fault]]
 target = "sensor"

@@ -3,6 +3,7 @@
 mod command;
 mod company;
 mod coupling;
+mod friction;
 mod independent;
 mod measurement;
 mod plant;

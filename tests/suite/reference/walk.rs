@@ -5,8 +5,10 @@
 //! | `straight` | a straight walk against an independent implementation |
 //! | `turning` | walks along curves: balance, feet, joints; another robot |
 //! | `refusals` | what is refused, and in which words |
+//! | `gaits` | gaits of robots of other sizes, the nearest that can be walked |
 //! | `properties` | splines; no input makes planning panic |
 
+mod gaits;
 mod properties;
 mod refusals;
 mod straight;

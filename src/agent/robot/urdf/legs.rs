@@ -1,13 +1,17 @@
 //! Which joints of a URDF are the legs, and what is held still.
 
 use super::syntax::{Joint, JointKind, Urdf};
-use super::tree::{Moving, Tree};
+use super::tree::{Limb, Moving, Tree};
+use crate::agent::robot::check::Check;
 use crate::agent::robot::error::RobotError;
 use crate::agent::robot::structure::LEG_JOINTS;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 
 /// Joints that a note names before it counts the others.
 const NAMED: usize = 6;
+
+/// How much lower than a leg nothing may hang, m: what does is the true leg.
+const LOWER_M: f64 = 0.05;
 
 /// Two legs among other limbs: the pelvis, and what has to be held at zero so that nothing else moves.
 pub(super) struct Found {
@@ -27,6 +31,8 @@ pub(super) fn find(
     urdf: &Urdf,
     pelvis: Option<&str>,
 ) -> Result<Option<Found>, RobotError> {
+    let limbs = tree.limbs()?;
+    let lowest_m = limbs.first().map_or(f64::INFINITY, |limb| limb.height_m);
     let mut best: Option<(f64, Found)> = None;
     for carrier in tree.carriers() {
         if pelvis.is_some_and(|name| !tree.are_rigid(carrier, name)) {
@@ -35,15 +41,19 @@ pub(super) fn find(
         let rigid = tree.rigid(carrier)?;
         let mut legs = Vec::new();
         for moving in &rigid.moving {
-            if let Some((joints, height_m)) = chain(tree, moving)? {
-                legs.push((height_m, joints));
-            }
+            legs.extend(chain(tree, moving)?);
         }
-        legs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [(first_m, first), (second_m, second), ..] = legs.as_slice() else {
+        // Arms of six joints beside legs of another number are no legs: something hangs lower.
+        if pelvis.is_none() {
+            let frame = tree.at_zero(carrier)?;
+            legs.retain(|leg| (frame * leg.end_m).z < lowest_m + LOWER_M);
+        }
+        legs.sort_by(|a, b| a.end_m.z.total_cmp(&b.end_m.z));
+        let [first, second, ..] = legs.as_slice() else {
             continue;
         };
-        let height_m = first_m.max(*second_m);
+        let height_m = first.end_m.z.max(second.end_m.z);
+        let (first, second) = (&first.joints, &second.joints);
         let moves = |joint: &&Joint| {
             let still = [JointKind::Fixed, JointKind::Floating].contains(&joint.kind);
             !still && !first.contains(&joint.name) && !second.contains(&joint.name)
@@ -67,9 +77,16 @@ pub(super) fn find(
     Ok(best.map(|(_, found)| found))
 }
 
-/// The joints of a leg that begins with one, and how high its last joint is above the link that carries it at q = 0, m;
-/// none if it is no chain of six revolute joints.
-fn chain(tree: &Tree<'_>, hip: &Moving<'_>) -> Result<Option<(Vec<String>, f64)>, RobotError> {
+/// Six revolute joints, one after the other.
+struct Chain {
+    /// Their names.
+    joints: Vec<String>,
+    /// Where the last one is at q = 0 in the frame of the link that carries the first, m.
+    end_m: Point3<f64>,
+}
+
+/// The leg that begins with a joint; none if it is no chain of six revolute joints.
+fn chain(tree: &Tree<'_>, hip: &Moving<'_>) -> Result<Option<Chain>, RobotError> {
     let mut names = Vec::new();
     let mut frame = Isometry3::identity();
     let mut next = Some(*hip);
@@ -88,7 +105,45 @@ fn chain(tree: &Tree<'_>, hip: &Moving<'_>) -> Result<Option<(Vec<String>, f64)>
         };
     }
     let whole = names.len() == LEG_JOINTS;
-    Ok(whole.then_some((names, frame.translation.z)))
+    Ok(whole.then(|| Chain {
+        joints: names,
+        end_m: frame.translation.vector.into(),
+    }))
+}
+
+/// Why there are no two legs: what is wrong with the first of the two limbs that hang lowest.
+pub(super) fn none(check: &Check<'_>, limbs: &[Limb<'_>]) -> RobotError {
+    let wrong = |limb: &Limb<'_>| {
+        let joints = &limb.joints;
+        let follows = joints.iter().find(|joint| joint.mimic.is_some());
+        let other = joints
+            .iter()
+            .find(|joint| joint.kind != JointKind::Revolute);
+        match (follows, other, joints.len()) {
+            (Some(joint), ..) => Some(format!("{} follows another joint", joint.name)),
+            (None, Some(joint), _) => Some(format!("{} is {}", joint.name, joint.kind.word())),
+            (None, None, LEG_JOINTS) => None,
+            (None, None, 0) => Some("nothing moves".to_string()),
+            (None, None, count) => Some(format!("these are {count}")),
+        }
+    };
+    let lowest = limbs.iter().take(2);
+    let named = lowest.filter_map(|limb| Some((limb, wrong(limb)?))).next();
+    let (limb, why) = match named {
+        Some((limb, why)) => (Some(limb), why),
+        None => (
+            limbs.first(),
+            "no other limb of the same link is one".to_string(),
+        ),
+    };
+    let joints = limb.map_or(&[][..], |limb| &limb.joints);
+    let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+    check.invalid(
+        "moving joints of a limb that hangs lowest",
+        format!("{names:?}"),
+        format!("a biped has two legs, each a chain of six revolute joints, on one link; {why}"),
+        "lock joints that are too many, or name the pelvis if something else hangs lower than the legs",
+    )
 }
 
 /// What is said of joints that are held at zero.

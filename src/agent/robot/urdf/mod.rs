@@ -1,18 +1,23 @@
 //! A robot from a URDF: two legs of six revolute joints on a pelvis. Every other joint is fixed, and its link is part
 //! of the one that carries it.
 
+mod bodies;
+mod feet;
 mod legs;
+mod options;
 mod syntax;
 mod tree;
 
-use super::check::{Check, Names, Place, RawJoint};
+use super::check::{Check, LARGEST, Names, Place, RawJoint};
 use super::error::{self, RobotError};
-use super::kinematics::{by_leg, leg_pose};
+use super::standing::height_m;
 use super::structure::{Body, Foot, JOINTS, Joint, LEFT, LEG_JOINTS, Leg, RIGHT, Robot};
-use nalgebra::{Isometry3, Vector3, Vector6};
+use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
-use syntax::Urdf;
+use syntax::{Limit, Urdf};
 use tree::{Moving, Tree};
+
+pub use options::{Soles, Standing, UrdfOptions};
 
 const NAMES: Names = Names {
     mass: "inertial mass",
@@ -31,48 +36,6 @@ const NAMES: Names = Names {
 
 /// Inertia of a rotor as seen from its joint where nobody says it, kg m^2.
 const DEFAULT_ARMATURE_KG_M2: f64 = 0.01;
-
-/// What a URDF does not say.
-#[derive(Debug, Clone, PartialEq)]
-pub struct UrdfOptions {
-    /// The link that is the pelvis (default: the child of a floating joint if there is one, else the root link).
-    pub pelvis: Option<String>,
-    /// The first joint of the left leg (default: the one with the larger y).
-    pub left_hip: Option<String>,
-    /// Moving joints outside the legs, held at zero.
-    pub locked: Vec<String>,
-    /// Inertia of each joint's rotor as seen from the joint, kg m^2 (default: that of the file, else 0.01).
-    pub armature_kg_m2: Option<[f64; JOINTS]>,
-    /// Left and right foot (default: both frames in the last link's origin, the sole parallel to the pelvis at q = 0).
-    pub feet: Option<[Foot; 2]>,
-    /// Standing pose, rad (default: zero, or the nearest angle that a joint can reach).
-    pub standing_rad: Option<[f64; JOINTS]>,
-    /// Nominal height of the pelvis frame above the ground, m (default: that above the soles in the standing pose).
-    pub base_height_m: Option<f64>,
-    /// Gravity in the world frame, m/s^2.
-    pub gravity_m_s2: Vector3<f64>,
-    /// Licence of the numbers.
-    pub licence: String,
-    /// Whose numbers they are.
-    pub attribution: String,
-}
-
-impl Default for UrdfOptions {
-    fn default() -> Self {
-        Self {
-            pelvis: None,
-            left_hip: None,
-            locked: Vec::new(),
-            armature_kg_m2: None,
-            feet: None,
-            standing_rad: None,
-            base_height_m: None,
-            gravity_m_s2: Vector3::new(0.0, 0.0, -9.81),
-            licence: String::new(),
-            attribution: String::new(),
-        }
-    }
-}
 
 /// Reads a URDF.
 ///
@@ -96,19 +59,22 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     let mut locked = options.locked.clone();
     let mut pelvis = options.pelvis.clone();
     // Arms, a waist, a head: what is no leg is held still.
-    if moves_more_than_legs(&tree, pelvis.as_deref())?
-        && let Some(found) = legs::find(&tree, &urdf, pelvis.as_deref())?
-    {
-        let own = found.locked.iter().filter(|name| !locked.contains(name));
-        notes.push(legs::held(&own.cloned().collect::<Vec<_>>()));
-        locked = found.locked;
-        pelvis = Some(found.pelvis);
+    if moves_more_than_legs(&tree, pelvis.as_deref())? {
+        let found = legs::find(&tree, &urdf, pelvis.as_deref())?;
+        if let Some(found) = found {
+            let own = found.locked.iter().filter(|name| !locked.contains(name));
+            notes.push(legs::held(&own.cloned().collect::<Vec<_>>()));
+            locked = found.locked;
+            pelvis = Some(found.pelvis);
+        } else if pelvis.is_none() {
+            return Err(legs::none(&check, &tree.limbs()?));
+        }
     }
     let tree = Tree::new(&check, &urdf, &locked)?;
     let pelvis = tree.pelvis(pelvis.as_deref())?;
     let rigid = tree.rigid(pelvis)?;
     let [left, right] = hips(&check, &tree, &rigid.moving, options, &mut notes)?;
-    let base = tree.body(pelvis, &rigid)?;
+    let base = tree.trunk(pelvis, &rigid, &mut notes)?;
     let [left_armature, right_armature] = match &options.armature_kg_m2 {
         Some(all) => halves(all).map(Some),
         None => [None; 2],
@@ -118,17 +84,8 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
         leg(&check, &tree, &right, right_armature)?,
     ];
     notes.extend(assumed(&urdf, &legs, options));
-    if let Some(feet) = &options.feet {
-        for (leg, foot) in legs.iter_mut().zip(feet) {
-            check.foot("feet", foot)?;
-            leg.foot = foot.clone();
-        }
-    }
-    let standing_rad = options.standing_rad.unwrap_or_else(|| at_rest(&legs));
-    check.standing("standing_rad", &legs, &standing_rad)?;
-    if options.feet.is_none() && options.standing_rad.is_some() {
-        level_soles(&mut legs, &standing_rad);
-    }
+    let standing_rad = feet::set(&check, &tree, &mut legs, options)?;
+    notes.extend(feet::assumed(options));
     let height_m = height_m(&legs, &standing_rad);
     // A root frame on the ground (REP-120) is no pelvis: the link that carries the legs is.
     let carrier = tree.carrier_of(&left.joint.name);
@@ -184,27 +141,19 @@ fn hips<'a>(
         Ok::<f64, RobotError>(placement.translation.y)
     };
     let (y_one, y_other) = (y_of(one)?, y_of(other)?);
-    let one_is_left = match options.left_hip.as_deref() {
-        Some(name) if name == one.joint.name => true,
-        Some(name) if name == other.joint.name => false,
-        Some(name) => {
-            return Err(check.invalid(
-                "left_hip",
-                format!("{name:?}"),
-                format!(
-                    "the legs begin with {:?} and {:?}",
-                    one.joint.name, other.joint.name
-                ),
-                "name one of these",
-            ));
-        }
-        None if y_one * y_other < 0.0 => y_one > y_other,
-        None => {
+    let named = [one, other].map(|hip| legs::side_by_name(&hip.joint.name));
+    let given = options.left_hip.is_some() || options.right_hip.is_some();
+    let one_is_left = match (given, named) {
+        (true, _) => is_left(check, [one, other], options)?,
+        (false, _) if y_one * y_other < 0.0 => y_one > y_other,
+        // Side by side they are not; their names may say it.
+        (false, [Some(left), Some(other_left)]) if left != other_left => left,
+        (false, _) => {
             return Err(check.invalid(
                 format!("origin y of ({}, {})", one.joint.name, other.joint.name),
                 format!("[{y_one}, {y_other}]"),
                 "the left leg begins at y > 0 of the pelvis and the right one at y < 0",
-                "name the first joint of the left leg",
+                "name the first joint of the left leg as left_hip",
             ));
         }
     };
@@ -213,7 +162,7 @@ fn hips<'a>(
         false => [*other, *one],
     };
     let named = [left, right].map(|hip| legs::side_by_name(&hip.joint.name));
-    if options.left_hip.is_none() && named == [Some(false), Some(true)] {
+    if !given && named == [Some(false), Some(true)] {
         notes.push(format!(
             "the leg of {} is taken for the left one, for it begins at y > 0 of the pelvis, though its name says right: turn \
              the frame of the pelvis, or name the other one as left_hip",
@@ -221,6 +170,41 @@ fn hips<'a>(
         ));
     }
     Ok([left, right])
+}
+
+/// Whether the first of two hips is the left one, where the options name one or both.
+fn is_left(
+    check: &Check<'_>,
+    hips: [&Moving<'_>; 2],
+    options: &UrdfOptions,
+) -> Result<bool, RobotError> {
+    let names = hips.map(|hip| hip.joint.name.as_str());
+    let mut first_is_left = None;
+    for (key, given, left) in [
+        ("left_hip", &options.left_hip, true),
+        ("right_hip", &options.right_hip, false),
+    ] {
+        let Some(name) = given else { continue };
+        let Some(place) = names.iter().position(|own| own == name) else {
+            return Err(check.invalid(
+                key,
+                format!("{name:?}"),
+                format!("the legs begin with {:?} and {:?}", names[0], names[1]),
+                "name one of these",
+            ));
+        };
+        let says = (place == 0) == left;
+        if first_is_left.is_some_and(|earlier| earlier != says) {
+            return Err(check.invalid(
+                key,
+                format!("{name:?}"),
+                "left_hip names the same joint",
+                "name the other one, or leave one of the two keys out",
+            ));
+        }
+        first_is_left = Some(says);
+    }
+    Ok(first_is_left.unwrap_or(true))
 }
 
 /// Whether the pelvis moves more than two joints, or none of its limbs is a leg.
@@ -256,14 +240,27 @@ fn assumed(urdf: &Urdf, legs: &[Leg; 2], options: &UrdfOptions) -> Vec<String> {
              agent.armature_kg_m2 gives another"
         ));
     }
+    let none = driven.clone().filter(|(_, drive)| {
+        let Limit {
+            effort, velocity, ..
+        } = drive.limit;
+        effort.max(velocity) > LARGEST
+    });
+    let none: Vec<&str> = none.map(|(name, _)| name.as_str()).collect();
+    if !none.is_empty() {
+        notes.push(format!(
+            "limits of effort and velocity above {LARGEST:e} are taken for none ({})",
+            none.join(", ")
+        ));
+    }
     let rubbing = driven.filter(|(_, drive)| drive.friction != 0.0);
     let rubbing: Vec<String> = rubbing
         .map(|(name, drive)| format!("{name} {} N m", drive.friction))
         .collect();
     if !rubbing.is_empty() {
         notes.push(format!(
-            "the model has no dry friction, that of the file is left out ({}); a [[disturbance]] of that size bounds what it \
-             can do",
+            "friction is no part of the controller's model, and that of the file is left out ({}): a [[disturbance]] of the \
+             kind \"friction\" with such a coulomb brings it in",
             rubbing.join(", ")
         ));
     }
@@ -317,7 +314,12 @@ fn leg(
     let joints = <[Joint; LEG_JOINTS]>::try_from(joints).map_err(|joints| {
         check.invalid("joints", joints.len(), "a leg has six", "add or lock some")
     })?;
-    Ok(standing_on_its_sole(joints))
+    let foot = Foot {
+        ankle_offset_m: Vector3::zeros(),
+        sole: Isometry3::identity(),
+        sole_corners_m: Vec::new(),
+    };
+    Ok(Leg { joints, foot })
 }
 
 fn joint(
@@ -341,8 +343,9 @@ fn joint(
         axis: urdf.axis,
         q_min: drive.limit.lower,
         q_max: drive.limit.upper,
-        rate_max: drive.limit.velocity,
-        torque_max: drive.limit.effort,
+        // Beyond every limit of a number it is none; a note says so.
+        rate_max: drive.limit.velocity.min(LARGEST),
+        torque_max: drive.limit.effort.min(LARGEST),
         armature: armature
             .or(drive.armature)
             .unwrap_or(DEFAULT_ARMATURE_KG_M2),
@@ -353,44 +356,6 @@ fn joint(
         placement: tree.placement(moving)?,
         ..joint
     })
-}
-
-/// A leg with the default foot: at q = 0 the sole is parallel to the pelvis.
-fn standing_on_its_sole(joints: [Joint; LEG_JOINTS]) -> Leg {
-    let foot = Foot {
-        ankle_offset_m: Vector3::zeros(),
-        sole: Isometry3::identity(),
-        sole_corners_m: Vec::new(),
-    };
-    let mut leg = Leg { joints, foot };
-    let last = leg_pose(&leg, &Vector6::zeros()).link(LEG_JOINTS - 1);
-    leg.foot.sole.rotation = last.rotation.inverse();
-    leg
-}
-
-/// Turns the soles so that they are parallel to the pelvis in the standing pose.
-fn level_soles(legs: &mut [Leg; 2], standing_rad: &[f64; JOINTS]) {
-    for (leg, q_rad) in legs.iter_mut().zip(by_leg(standing_rad)) {
-        let last = leg_pose(leg, &q_rad).link(LEG_JOINTS - 1);
-        leg.foot.sole.rotation = last.rotation.inverse();
-    }
-}
-
-/// The pose nearest to zero that the joints can reach.
-fn at_rest(legs: &[Leg; 2]) -> [f64; JOINTS] {
-    std::array::from_fn(|i| {
-        let joint = &legs[i / LEG_JOINTS].joints[i % LEG_JOINTS];
-        0.0_f64.clamp(joint.q_min_rad, joint.q_max_rad)
-    })
-}
-
-/// Height of the pelvis above the lower sole, m.
-fn height_m(legs: &[Leg; 2], q_rad: &[f64; JOINTS]) -> f64 {
-    let q = by_leg(q_rad);
-    [LEFT, RIGHT]
-        .map(|i| -leg_pose(&legs[i], &q[i]).sole().translation.z)
-        .into_iter()
-        .fold(f64::NEG_INFINITY, f64::max)
 }
 
 fn halves(all: &[f64; JOINTS]) -> [&[f64; LEG_JOINTS]; 2] {

@@ -1,16 +1,15 @@
 //! The tree of links and joints of a URDF, and what of it is rigid.
 
 use super::syntax::{Joint, JointKind, Link, Urdf};
-use crate::agent::robot::check::{Check, Place, tensor};
+use crate::agent::robot::check::{Check, Place};
 use crate::agent::robot::error::RobotError;
-use crate::agent::robot::structure::Body;
 use nalgebra::Isometry3;
 use std::collections::HashMap;
 
 /// A URDF whose joints connect its links to one tree.
 pub(super) struct Tree<'a> {
-    check: &'a Check<'a>,
-    links: &'a [Link],
+    pub(super) check: &'a Check<'a>,
+    pub(super) links: &'a [Link],
     joints: &'a [Joint],
     locked: &'a [String],
     /// Index of each link.
@@ -24,8 +23,8 @@ pub(super) struct Tree<'a> {
 
 /// Links that do not move relative to each other, in the frame of the first.
 pub(super) struct Rigid<'a> {
-    /// Their mass; none if all are bare frames.
-    body: Option<Body>,
+    /// The links, each with its frame.
+    pub links: Vec<(usize, Isometry3<f64>)>,
     /// The moving joints that they carry.
     pub moving: Vec<Moving<'a>>,
 }
@@ -36,6 +35,14 @@ pub(super) struct Moving<'a> {
     pub joint: &'a Joint,
     /// Frame of the link that carries it, in the frame of the rigid links that this link belongs to.
     parent: Isometry3<f64>,
+}
+
+/// A limb at q = 0.
+pub(super) struct Limb<'a> {
+    /// How high its last moving joint is in the root link's frame, m.
+    pub height_m: f64,
+    /// Its moving joints, from the last link that carries several of them.
+    pub joints: Vec<&'a Joint>,
 }
 
 impl<'a> Tree<'a> {
@@ -171,16 +178,12 @@ impl<'a> Tree<'a> {
     /// only fixed joints are followed; beyond a floating one is the ground.
     pub(super) fn rigid(&self, first: usize) -> Result<Rigid<'a>, RobotError> {
         let mut rigid = Rigid {
-            body: None,
+            links: Vec::new(),
             moving: Vec::new(),
         };
         let mut todo = vec![(first, Isometry3::identity(), None)];
         while let Some((link, frame, via)) = todo.pop() {
-            if let Some(own) = self.own_body(link)? {
-                let rotation = frame.rotation.to_rotation_matrix();
-                let own = own.moved(rotation.matrix(), &frame.translation.vector);
-                rigid.body = Some(rigid.body.map_or(own, |body| body.joined(&own)));
-            }
+            rigid.links.push((link, frame));
             for j in &self.carried[link] {
                 let joint = &self.joints[*j];
                 if Some(*j) == via {
@@ -215,6 +218,57 @@ impl<'a> Tree<'a> {
         (0..self.links.len()).filter(is_first).collect()
     }
 
+    /// A link's frame at q = 0 in the root link's.
+    pub(super) fn at_zero(&self, mut link: usize) -> Result<Isometry3<f64>, RobotError> {
+        let mut frame = Isometry3::identity();
+        while let Some(joint) = self.carrier[link].map(|joint| &self.joints[joint]) {
+            frame = self.origin(joint)? * frame;
+            link = self.index[joint.parent.as_str()];
+        }
+        Ok(frame)
+    }
+
+    /// The limbs, the one that hangs lowest first: where their last joints are, for what is fixed behind these may be
+    /// anything.
+    pub(super) fn limbs(&self) -> Result<Vec<Limb<'a>>, RobotError> {
+        let mut limbs = Vec::new();
+        for carrier in self.carriers() {
+            if self.rigid(carrier)?.moving.is_empty() {
+                let height_m = self.at_zero(carrier)?.translation.z;
+                let joints = self.limb(carrier)?;
+                limbs.push(Limb { height_m, joints });
+            }
+        }
+        limbs.sort_by(|a, b| a.height_m.total_cmp(&b.height_m));
+        Ok(limbs)
+    }
+
+    /// The moving joints from the last link that carries several of them to a link.
+    fn limb(&self, mut link: usize) -> Result<Vec<&'a Joint>, RobotError> {
+        let mut joints = Vec::new();
+        while let Some(joint) = self.carrier[link].map(|joint| &self.joints[joint]) {
+            link = self.index[joint.parent.as_str()];
+            if self.is_fixed(joint) {
+                continue;
+            }
+            joints.insert(0, joint);
+            if self.rigid(self.carrier_link(link))?.moving.len() > 1 {
+                break;
+            }
+        }
+        Ok(joints)
+    }
+
+    /// The first of the links that a link is fixed to.
+    fn carrier_link(&self, mut link: usize) -> usize {
+        while let Some(joint) = self.carrier[link].map(|joint| &self.joints[joint])
+            && self.is_fixed(joint)
+        {
+            link = self.index[joint.parent.as_str()];
+        }
+        link
+    }
+
     /// Whether a link of this name is fixed to a link, over however many others.
     pub(super) fn are_rigid(&self, link: usize, name: &str) -> bool {
         let Some(mut other) = self.index.get(name).copied() else {
@@ -240,28 +294,40 @@ impl<'a> Tree<'a> {
         joint.map_or(String::new(), |joint| joint.parent.clone())
     }
 
-    /// The body of rigid links; a link that moves needs one.
-    pub(super) fn body(&self, first: usize, rigid: &Rigid<'_>) -> Result<Body, RobotError> {
-        let name = self.name(first);
-        let place = Place {
-            prefix: "link ",
-            name,
-        };
-        let Some(body) = &rigid.body else {
-            return Err(self.check.invalid(
-                place.key("inertial"),
-                "none",
-                "a moving link and the pelvis have a mass and an inertia",
-                "add <inertial> to the link or to one fixed to it",
-            ));
-        };
-        self.check
-            .body(place, body.mass_kg, body.com_m, &body.inertia_kg_m2)
-    }
-
     /// Frame of a moving joint at q = 0 in the frame of the rigid links that carry it.
     pub(super) fn placement(&self, moving: &Moving<'_>) -> Result<Isometry3<f64>, RobotError> {
         Ok(moving.parent * self.origin(moving.joint)?)
+    }
+
+    /// A link's frame in that of the link which a joint of this name moves, to which it has to be fixed.
+    pub(super) fn frame_below(
+        &self,
+        joint: &str,
+        name: &str,
+    ) -> Result<Isometry3<f64>, RobotError> {
+        let last = self.joints.iter().find(|own| own.name == joint);
+        let last = last.map_or(self.root, |own| self.index[own.child.as_str()]);
+        let refused = |limit: String| {
+            self.check.invalid(
+                "sole",
+                format!("{name:?}"),
+                limit,
+                "name a link that is fixed to the last one of this leg",
+            )
+        };
+        let named = self.index.get(name).copied();
+        let mut link = named.ok_or_else(|| refused("no such link".to_string()))?;
+        let mut frame = Isometry3::identity();
+        while link != last {
+            let joint = self.carrier[link].map(|joint| &self.joints[joint]);
+            let Some(joint) = joint.filter(|joint| self.is_fixed(joint)) else {
+                let last = self.name(last);
+                return Err(refused(format!("it is not fixed to {last:?}")));
+            };
+            frame = self.origin(joint)? * frame;
+            link = self.index[joint.parent.as_str()];
+        }
+        Ok(frame)
     }
 
     /// The link that a moving joint moves.
@@ -294,37 +360,6 @@ impl<'a> Tree<'a> {
         ))
     }
 
-    /// A link's own mass; none for a bare frame. The inertia of a point or a line will do where other links add to it.
-    fn own_body(&self, link: usize) -> Result<Option<Body>, RobotError> {
-        let Some(inertial) = &self.links[link].inertial else {
-            return Ok(None);
-        };
-        let place = Place {
-            prefix: "link ",
-            name: self.name(link),
-        };
-        let six = inertial.inertia;
-        if inertial.mass == 0.0 && six.iter().all(|entry| *entry == 0.0) {
-            return Ok(None);
-        }
-        let names = self.check.names;
-        let origin = self.check.pose(
-            &place.key(names.com),
-            inertial.origin.xyz,
-            &place.key("inertial origin rpy"),
-            inertial.origin.rpy,
-        )?;
-        let (mass_kg, tensor) = (inertial.mass, tensor(six));
-        let com_m = origin.translation.vector;
-        self.check.realizable(place, mass_kg, com_m, &tensor)?;
-        let rotation = origin.rotation.to_rotation_matrix();
-        Ok(Some(Body {
-            mass_kg,
-            com_m,
-            inertia_kg_m2: rotation.matrix() * tensor * rotation.matrix().transpose(),
-        }))
-    }
-
     fn origin(&self, joint: &Joint) -> Result<Isometry3<f64>, RobotError> {
         let place = Place {
             prefix: "joint ",
@@ -355,7 +390,7 @@ impl<'a> Tree<'a> {
         self.index[self.joints[joint].child.as_str()]
     }
 
-    fn name(&self, link: usize) -> &'a str {
+    pub(super) fn name(&self, link: usize) -> &'a str {
         &self.links[link].name
     }
 }

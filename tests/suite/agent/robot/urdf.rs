@@ -2,6 +2,7 @@
 
 mod limbs;
 mod refusals;
+mod variants;
 
 use super::{leg_states, load, shipped};
 use nalgebra::{Isometry3, Rotation3, Vector3};
@@ -9,7 +10,9 @@ use std::fmt::Write;
 use std::path::Path;
 use urts_mc::agent::robot::dynamics::{bias_force, mass_matrix};
 use urts_mc::agent::robot::kinematics::{com_m, leg_pose};
-use urts_mc::agent::robot::{Body, LEFT, RIGHT, Robot, RobotError, UrdfOptions, urdf};
+use urts_mc::agent::robot::{
+    Body, LEFT, RIGHT, Robot, RobotError, Soles, Standing, UrdfOptions, urdf,
+};
 
 fn parse(text: &str, options: &UrdfOptions) -> Result<Robot, RobotError> {
     urdf::parse(text, Path::new("robots/x.urdf"), options)
@@ -80,8 +83,10 @@ fn options_of(robot: &Robot) -> UrdfOptions {
     let mut armature = robot.joints().map(|joint| joint.armature_kg_m2);
     UrdfOptions {
         armature_kg_m2: Some(std::array::from_fn(|_| armature.next().unwrap())),
-        feet: Some(robot.legs.each_ref().map(|leg| leg.foot.clone())),
-        standing_rad: Some(robot.standing_rad),
+        soles: Some(Soles::Feet(
+            robot.legs.each_ref().map(|leg| leg.foot.clone()),
+        )),
+        standing: Some(Standing::Angles(robot.standing_rad)),
         base_height_m: Some(robot.base_height_m),
         licence: robot.licence.clone(),
         attribution: robot.attribution.clone(),
@@ -273,9 +278,13 @@ fn which_leg_is_left_is_told_by_y_or_by_name() {
     assert_eq!(names(&by_name), ["r_hip_pitch", "l_hip_pitch"]);
     let by_y = parse(&text, &UrdfOptions::default()).unwrap();
     assert_eq!(names(&by_y), ["l_hip_pitch", "r_hip_pitch"]);
+    // On one side, and by names that say nothing.
     let same_side = text.replace("-6.4452e-2", "6.4452e-2");
+    let same_side = same_side
+        .replace("\"l_", "\"one_")
+        .replace("\"r_", "\"other_");
     let refused = parse(&same_side, &UrdfOptions::default()).unwrap_err();
-    let expected = "robots/x.urdf: origin y of (l_hip_pitch, r_hip_pitch) = [0.064452, 0.064452]: the left leg begins at y > 0 of the pelvis and the right one at y < 0; name the first joint of the left leg";
+    let expected = "robots/x.urdf: origin y of (one_hip_pitch, other_hip_pitch) = [0.064452, 0.064452]: the left leg begins at y > 0 of the pelvis and the right one at y < 0; name the first joint of the left leg as left_hip";
     assert_eq!(refused.to_string(), expected);
 }
 

@@ -34,6 +34,7 @@ fn val_all_faults_of_a_uav_agree() {
     for kind in [
         DisturbanceKind::Gust1Cosine,
         DisturbanceKind::Dryden,
+        DisturbanceKind::Friction,
         DisturbanceKind::RotorVortex,
     ] {
         assert!(

@@ -74,8 +74,8 @@ impl World {
         ]
     }
 
-    /// d1 without the coupling.
-    fn disturbance(&self, agent: usize, t_s: f64) -> Joints {
+    /// d1 without the coupling, at the rates of the joints.
+    fn disturbance(&self, agent: usize, t_s: f64, rate: &Joints) -> Joints {
         let drawn = &self.episode.agents[agent].disturbances;
         let kinds = self
             .campaign
@@ -91,6 +91,9 @@ impl World {
                 DisturbanceKind::Sine => drawn[0][c] * (drawn[1][c] * t_s + drawn[2][c]).sin(),
                 DisturbanceKind::Constant => drawn[0][c],
                 DisturbanceKind::GroundReaction => drawn[0][c] * ground[c],
+                DisturbanceKind::Friction => {
+                    -drawn[0][c] * (rate[c] / drawn[2][c]).tanh() - drawn[1][c] * rate[c]
+                }
                 DisturbanceKind::Gust1Cosine
                 | DisturbanceKind::Dryden
                 | DisturbanceKind::RotorVortex => {
@@ -175,8 +178,8 @@ impl World {
         let command = left.component_mul(&limited) + added;
 
         // (4) of the true robot, whose M and H are those of the model times a number; (11).
-        let force = self.disturbance(agent, t_s) + drawn.kappa * coupling;
         let (q, rate) = (r + row(state, 1), r_rate + row(state, 2));
+        let force = self.disturbance(agent, t_s, &rate) + drawn.kappa * coupling;
         let acceleration = each_leg(|leg| {
             let (q, rate) = (of_leg(&q, leg), of_leg(&rate, leg));
             let bias = drawn.mass_scale * bias_force(&legs[leg], gravity, &q, &rate);

@@ -2,8 +2,9 @@
 
 use super::{parse, written};
 use crate::agent::robot::load;
-use nalgebra::Isometry3;
-use urts_mc::agent::robot::{Robot, UrdfOptions};
+use nalgebra::{Isometry3, Vector3};
+use urts_mc::agent::robot::kinematics::{by_leg, leg_pose};
+use urts_mc::agent::robot::{Robot, Soles, Standing, UrdfOptions};
 
 fn plain() -> String {
     written(&load("g1_12dof"), &Isometry3::identity())
@@ -171,10 +172,124 @@ fn legs_whose_names_contradict_their_sides_are_taken_by_side_and_it_is_said() {
         "{:?}",
         robot.notes
     );
+    // The other one by its name says the same.
+    let told = UrdfOptions {
+        right_hip: Some("l_hip_pitch".into()),
+        ..UrdfOptions::default()
+    };
+    assert_eq!(parse(&swapped, &told).unwrap(), robot);
+    // Where no side is told from the other by place, names do.
+    let moved = plain().replace("xyz=\"0e0 6.4452e-2", "xyz=\"0e0 -6.4451e-2");
+    assert_ne!(moved, plain());
+    assert!(read(&moved).legs[0].joints[0].name.starts_with("l_"));
 }
 
 #[test]
-fn what_a_campaign_says_of_a_urdf_reaches_the_robot_and_a_table_has_no_use_for_it() {
+fn arms_of_six_joints_are_no_legs_where_something_hangs_lower() {
+    // The ankles' rolls are fixed: the legs have five joints, and only the arms have six.
+    let text = with_upper_body();
+    let fixed = ["l", "r"].iter().fold(text, |text, side| {
+        let name = format!("<joint name=\"{side}_ankle_roll\" type=");
+        text.replace(&format!("{name}\"revolute\""), &format!("{name}\"fixed\""))
+    });
+    let refused = parse(&fixed, &UrdfOptions::default())
+        .unwrap_err()
+        .to_string();
+    let words = "a biped has two legs, each a chain of six revolute joints, on one link; these are 5; lock joints";
+    assert!(refused.contains(words), "{refused}");
+    assert!(refused.contains("_knee"), "{refused}");
+    // One that follows another is named.
+    let follows = with_upper_body().replace(
+        "<joint name=\"r_knee\" type=\"revolute\">",
+        "<joint name=\"r_knee\" type=\"revolute\"><mimic joint=\"l_knee\"/>",
+    );
+    let refused = parse(&follows, &UrdfOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("r_knee follows another joint"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn what_simulators_do_to_parts_that_are_held_still_is_noted() {
+    let whole = with_upper_body();
+    let padded = whole.replacen(
+        "<inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\"",
+        "<inertia ixx=\"0.03\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\"",
+        1,
+    );
+    let robot = read(&padded);
+    let note = "link waist_link, which is held still, has a mass or an inertia that no body has";
+    assert!(
+        robot.notes.iter().any(|own| own.contains(note)),
+        "{:?}",
+        robot.notes
+    );
+    let more = robot.base.inertia_kg_m2 - read(&whole).base.inertia_kg_m2;
+    assert!(
+        (more[(0, 0)] - 0.02).abs() < 1e-12 && more[(1, 1)].abs() < 1e-12,
+        "{more}"
+    );
+    // On a leg it is no longer a small matter.
+    let leg = plain().replacen("ixx=\"", "ixx=\"9", 2);
+    assert!(parse(&leg, &UrdfOptions::default()).is_err());
+    // A limit beyond every number is none.
+    let free = plain().replace("velocity=\"3.2e1\"", "velocity=\"1e9\"");
+    let robot = read(&free);
+    assert_eq!(robot.legs[0].joints[0].rate_max_rad_s, 1e6);
+    let note = "above 1e6 are taken for none (l_hip_pitch";
+    assert!(
+        robot.notes.iter().any(|own| own.contains(note)),
+        "{:?}",
+        robot.notes
+    );
+}
+
+#[test]
+fn soles_are_frames_that_are_named_or_level_where_the_robot_stands() {
+    // A sole that is tilted by 0.2 rad and lies below the ankle.
+    let frame = |side: &str| {
+        format!(
+            "<link name=\"{side}_sole\"/><joint name=\"{side}_sole_joint\" type=\"fixed\"><origin xyz=\"0.02 0 -0.035\" rpy=\"0 0.2 0\"/>\
+             <parent link=\"{side}_ankle_roll_link\"/><child link=\"{side}_sole\"/></joint>"
+        )
+    };
+    let text = plain().replace("</robot>", &format!("{}{}</robot>", frame("l"), frame("r")));
+    let named = UrdfOptions {
+        soles: Some(Soles::Frames(["l_sole".into(), "r_sole".into()])),
+        ..UrdfOptions::default()
+    };
+    let robot = parse(&text, &named).unwrap();
+    let sole = &robot.legs[1].foot.sole;
+    assert_eq!(sole.translation.vector, Vector3::new(0.02, 0.0, -0.035));
+    assert!((sole.rotation.angle() - 0.2).abs() < 1e-15);
+    assert!(
+        robot
+            .notes
+            .iter()
+            .all(|note| !note.contains("level at q = 0"))
+    );
+    // They stand level below the hips, the knees bent forwards, and so high above the ground.
+    let bent = UrdfOptions {
+        standing: Some(Standing::Bent),
+        ..named
+    };
+    let robot = parse(&text, &bent).unwrap();
+    let q = by_leg(&robot.standing_rad);
+    for (leg, q_rad) in robot.legs.iter().zip(&q) {
+        let pose = leg_pose(leg, q_rad);
+        assert!(pose.sole().rotation.angle() < 1e-11);
+        assert!(pose.origins_m[3].x > pose.ankle_m().x, "the knee is ahead");
+        assert!((pose.ankle_m().x - leg.joints[0].placement.translation.x).abs() < 1e-11);
+        assert!((pose.sole().translation.z + robot.base_height_m).abs() < 1e-11);
+    }
+    assert!(q[0][3] > 0.1, "the knee is bent");
+}
+
+#[test]
+fn what_a_campaign_says_of_a_robots_file_reaches_the_robot() {
     let place = tempfile::TempDir::new().unwrap();
     let path = |name: &str| place.path().join(name);
     std::fs::write(path("robot.urdf"), plain()).unwrap();
@@ -192,18 +307,44 @@ fn what_a_campaign_says_of_a_urdf_reaches_the_robot_and_a_table_has_no_use_for_i
         urts_mc::agent::Agent::Uav(_) => panic!("no biped"),
     };
     let standing = "[-0.2, 0.0, 0.0, 0.4, -0.2, 0.0, -0.2, 0.0, 0.0, 0.4, -0.3, 0.0]";
-    let keys = format!("pelvis = \"pelvis\"\narmature_kg_m2 = 0.02\nstanding_rad = {standing}\n");
+    let keys = format!("pelvis = \"pelvis\"\narmature_kg_m2 = 0.02\nstanding = {standing}\n");
     let own = robot(load("robot.urdf", &keys).unwrap());
     assert!(own.joints().all(|joint| joint.armature_kg_m2 == 0.02));
     assert_eq!(own.standing_rad[10], -0.3);
     // The right ankle is turned 0.1 rad farther: its sole is level there, and not at zero.
     let turn = |leg: usize| own.legs[leg].foot.sole.rotation.angle();
     assert!((turn(1) - turn(0)).abs() > 0.09, "{} {}", turn(0), turn(1));
+    // A table takes another pose and other rotors, one by one.
+    let list = (1..=12).map(|k| format!("0.0{k:02}")).collect::<Vec<_>>();
+    let keys = format!(
+        "armature_kg_m2 = [{}]\nstanding = \"bent\"\n",
+        list.join(", ")
+    );
+    let table = robot(load("robot.toml", &keys).unwrap());
+    let armatures: Vec<f64> = table.joints().map(|joint| joint.armature_kg_m2).collect();
+    assert_eq!((armatures[0], armatures[11]), (0.001, 0.012));
+    assert!(table.standing_rad[3] > 0.1 && table.base_height_m < 0.79);
     for (robot, keys, words) in [
         (
             "robot.toml",
-            "armature_kg_m2 = 0.02",
+            "sole = \"standing\"",
             "a joint table says this itself",
+        ),
+        (
+            "robot.urdf",
+            "standing = \"crouched\"",
+            "unknown value `crouched`, expected `bent`",
+        ),
+        ("robot.urdf", "standing = 0.1", "expected `bent` or a list"),
+        (
+            "robot.urdf",
+            "sole = [\"a\"]",
+            "expected a list of length 2",
+        ),
+        (
+            "robot.urdf",
+            "armature_kg_m2 = [0.1]",
+            "each of the 12 channels",
         ),
         (
             "robot.urdf",

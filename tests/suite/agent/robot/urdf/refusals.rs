@@ -4,7 +4,7 @@ use super::{inertial, parse, written};
 use crate::agent::robot::load;
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
-use urts_mc::agent::robot::{Foot, LEFT, UrdfOptions};
+use urts_mc::agent::robot::{Foot, LEFT, Soles, Standing, UrdfOptions};
 
 /// What is said of the G1's URDF with the first occurrence of a text replaced.
 fn refusal_of(old: &str, new: &str) -> String {
@@ -265,6 +265,21 @@ fn options_are_checked_like_the_file() {
         ),
         (
             said(UrdfOptions {
+                left_hip: Some("r_hip_pitch".into()),
+                right_hip: Some("r_hip_pitch".into()),
+                ..none()
+            }),
+            r#"right_hip = "r_hip_pitch": left_hip names the same joint; name the other one"#,
+        ),
+        (
+            said(UrdfOptions {
+                soles: Some(Soles::Frames(["l_knee_link".into(), "sole".into()])),
+                ..none()
+            }),
+            r#"sole = "l_knee_link": it is not fixed to "l_ankle_roll_link"; name a link that is fixed to the last one"#,
+        ),
+        (
+            said(UrdfOptions {
                 locked: vec!["waist".into()],
                 ..none()
             }),
@@ -272,17 +287,17 @@ fn options_are_checked_like_the_file() {
         ),
         (
             said(UrdfOptions {
-                feet: Some([foot.clone(), foot]),
+                soles: Some(Soles::Feet([foot.clone(), foot])),
                 ..none()
             }),
-            "feet = NaN: a number is finite",
+            "soles = NaN: a number is finite",
         ),
         (
             said(UrdfOptions {
-                standing_rad: Some([1.0; 12]),
+                standing: Some(Standing::Angles([1.0; 12])),
                 ..none()
             }),
-            "standing_rad[4] (l_ankle_pitch) = 1: the joint moves from -0.87267 to 0.5236 rad",
+            "standing[4] (l_ankle_pitch) = 1: the joint moves from -0.87267 to 0.5236 rad",
         ),
         (
             said(UrdfOptions {
