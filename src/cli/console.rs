@@ -5,6 +5,7 @@ use super::exit::{Code, Failure};
 use anstream::AutoStream;
 use std::io::{ErrorKind, Write, stderr, stdout};
 use urts_mc::report::terminal::BAD;
+use urts_mc::util::hidden::spelled_out;
 
 /// Prints to standard output; a reader that went away is not an error.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
@@ -29,12 +30,13 @@ pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 pub(super) fn print_note(note: &str) {
     let mut stream = AutoStream::auto(stderr()).lock();
     // There is no other place to say it.
-    let _ = writeln!(stream, "note: {note}");
+    let _ = writeln!(stream, "note: {}", spelled_out(note));
 }
 
 /// Says what went wrong on standard error.
 pub(crate) fn print_error(failure: &Failure) {
     let mut stream = AutoStream::auto(stderr()).lock();
     // There is no other place to say that nothing can be said.
-    let _ = writeln!(stream, "{BAD}error:{BAD:#} {}", failure.message);
+    let message = spelled_out(&failure.message);
+    let _ = writeln!(stream, "{BAD}error:{BAD:#} {message}");
 }

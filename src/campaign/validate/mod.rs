@@ -22,6 +22,7 @@ use super::parameter::Bounds;
 use super::source::Source;
 use super::time::Time;
 use super::validated::Campaign;
+use crate::util::hidden::is_hidden;
 use group::{Begun, MAX_AGENTS, RobotTexts};
 use std::sync::Arc;
 use synthesis::known_controllers;
@@ -137,11 +138,11 @@ impl Check<'_> {
         let words = text.unwrap_or_default().split_whitespace();
         let line = words.collect::<Vec<_>>().join(" ");
         let length = line.chars().count();
-        if length > LONGEST_DESCRIPTION || line.chars().any(char::is_control) {
+        if length > LONGEST_DESCRIPTION || line.chars().any(is_hidden) {
             return Err(self.invalid(
                 "description",
                 format!("{length} characters"),
-                &format!("a description has at most {LONGEST_DESCRIPTION} characters, none of which is a control character"),
+                &format!("a description has at most {LONGEST_DESCRIPTION} characters, all of which can be seen"),
                 "say it in fewer words",
             ));
         }

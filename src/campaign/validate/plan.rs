@@ -4,6 +4,7 @@ use crate::campaign::check::Check;
 use crate::campaign::error::CampaignError;
 use crate::campaign::file::*;
 use crate::campaign::plan::{ALL, Strata, Stratum, StratumFaults};
+use crate::util::hidden::is_hidden;
 use crate::util::suggest::did_you_mean;
 use std::sync::Arc;
 
@@ -52,20 +53,20 @@ impl Check<'_> {
         Ok(names)
     }
 
-    /// A name that people read: one line, not too long, without blanks at its ends.
+    /// A name that people read: one line, not too long, without blanks at its ends, and nothing that a spreadsheet takes
+    /// for a formula.
     fn title(&self, key: &str, name: &str) -> Result<(), CampaignError> {
         let fits = !name.is_empty() && name.chars().count() <= LONGEST_NAME;
-        if fits && name.trim() == name && !name.chars().any(char::is_control) {
-            return Ok(());
-        }
-        Err(self.invalid(
-            key,
-            format!("{name:?}"),
+        let limit = if !fits || name.trim() != name || name.chars().any(is_hidden) {
             &format!(
-                "a name is one line of 1 to {LONGEST_NAME} characters, without blanks at its ends"
-            ),
-            "rename it",
-        ))
+                "a name is one line of 1 to {LONGEST_NAME} characters that can be seen, without blanks at its ends"
+            )
+        } else if name.starts_with(['=', '+', '-', '@']) {
+            "a name begins with none of = + - @, which spreadsheets take for a formula"
+        } else {
+            return Ok(());
+        };
+        Err(self.invalid(key, format!("{name:?}"), limit, "rename it"))
     }
 
     /// The strata of a campaign's faults, of which the second says whether it is part of the background. Faults of

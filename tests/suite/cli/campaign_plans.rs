@@ -87,6 +87,14 @@ fn strata_and_names_that_cannot_be_are_refused() {
             "strata[0].name (line 70) ~ without blanks at its ends",
         ),
         (
+            r#"[[strata]]\nfaults = "all"\nname = "=1+1""#,
+            "strata[0].name (line 70) ~ begins with none of = + - @, which spreadsheets take for a formula; rename it",
+        ),
+        (
+            "[[strata]]\\nfaults = \"all\"\\nname = \"left\\u202eright\"",
+            "strata[0].name (line 70) ~ characters that can be seen",
+        ),
+        (
             r#"[[fault]]\nname = ""\ntarget = "sensor"\nkind = "bias"\nmagnitude = 1.0"#,
             "fault[2].name (line 69) ~ 1 to 60 characters",
         ),

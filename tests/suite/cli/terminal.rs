@@ -68,6 +68,22 @@ fn a_pipe_and_no_color_get_plain_text_and_who_asks_for_colours_gets_them() {
 }
 
 #[test]
+fn what_a_foreign_file_says_commands_no_terminal() {
+    let place = Place::smoke(&[]);
+    // A title of the window, and a mark that turns the direction of what follows.
+    place.write("c.toml", "\"\\u001b]0;owned\\u0007\\u202ekey\" = 1\n");
+    let said = ended(&place, &["check", "c.toml"], &[("CLICOLOR_FORCE", "1")]).stderr;
+    assert!(
+        said.contains("unknown key `\\u{1b}]0;owned\\u{7}\\u{202e}key`"),
+        "{said:?}"
+    );
+    assert!(
+        !said.contains("\u{1b}]") && !said.contains('\u{202e}'),
+        "{said:?}"
+    );
+}
+
+#[test]
 fn a_quiet_command_prints_nothing_but_errors_and_what_json_asks_for() {
     let place = Place::smoke(&[]);
     for arguments in [
