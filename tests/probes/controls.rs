@@ -453,7 +453,7 @@ fn val_every_change_is_of_a_text_that_there_is() {
     let files: BTreeSet<&str> = controls().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        18,
+        19,
         "each file of shaders/ that has functions, and the constants: {files:?}"
     );
     let texts = shapes::probed().map(|shape| shape.text());

@@ -27,6 +27,8 @@ const DIVIDED: f64 = 3.5;
 const ROOTED: f64 = 5.5;
 /// Error of sine and cosine, ulp of one: their polynomials are sums of a few terms below two.
 const SINE: f64 = 6.0;
+/// Error of the hyperbolic tangent, ulp of one: two polynomials and a quotient.
+const TANH: f64 = 12.0;
 /// Error of reducing an angle by multiples of pi, ulp of the angle. A compiler that reassociates adds up the two parts
 /// of pi and loses the second, as a software Vulkan was seen to do: a quarter of an ulp.
 const REDUCED: f64 = 2.0;
@@ -44,6 +46,14 @@ fn ulps(count: f64, value: f32) -> f64 {
 
 fn size(value: f32) -> f64 {
     f64::from(value.abs())
+}
+
+/// A product of which nothing is left where one factor is nothing, however large the other: an error may be unbounded.
+fn times(one: f64, other: f64) -> f64 {
+    if one == 0.0 || other == 0.0 {
+        return 0.0;
+    }
+    one * other
 }
 
 impl Tracked {
@@ -109,9 +119,9 @@ impl Mul for Tracked {
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let product = self.value * other.value;
-        let error = size(self.value) * other.error
-            + size(other.value) * self.error
-            + self.error * other.error;
+        let error = times(size(self.value), other.error)
+            + times(size(other.value), self.error)
+            + times(self.error, other.error);
         Self::new(product, error + ulps(ROUNDED, product))
     }
 }
@@ -234,7 +244,11 @@ impl Lane for Tracked {
     }
     #[inline(never)]
     fn tanh(self) -> Self {
-        math::tanh(self)
+        let tracked = math::tanh(self);
+        // Its slope is one at most, and so is its size, however far its argument may be off.
+        let most = self.error.min(2.0) + ulps(TANH, 1.0);
+        let is_known = tracked.error <= most;
+        Self::new(tracked.value, if is_known { tracked.error } else { most })
     }
     #[inline(never)]
     fn atan2(self, x: Self) -> Self {

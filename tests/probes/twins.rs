@@ -428,7 +428,7 @@ fn val_every_rust_function_has_a_twin_or_a_reason() {
     }
     for (file, text, twins) in TWINS {
         let defined = defined(text);
-        assert!(defined.len() >= 3, "{file}: {defined:?}");
+        assert!(!defined.is_empty(), "{file}");
         let listed: BTreeSet<&str> = twins.iter().map(|&(rust, _)| rust).collect();
         for name in &listed {
             assert!(defined.contains(name), "{file}.rs has no function {name}");
