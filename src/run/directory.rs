@@ -1,11 +1,13 @@
 //! The directory of a run: who may write there, and files that appear whole or not at all.
 
-use super::error::{MANIFEST, OutputError, REPORTS};
+use super::error::{MANIFEST, OutputError};
+use super::file_names::{ON_THE_WAY, is_ours};
 use super::integrity::inputs;
 use super::labels::Labels;
+use super::lock::{Lock, NotHeld};
 use super::manifest::{Manifest, campaign_hash};
+use super::replacement::recover;
 use crate::campaign::Campaign;
-use crate::results::files::RUN_TABLES;
 use crate::results::table::Table;
 use polars::prelude::{
     CsvWriter, KeyValueMetadata, ParquetCompression, ParquetWriter, PolarsError, SerWriter,
@@ -13,21 +15,33 @@ use polars::prelude::{
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+use tempfile::NamedTempFile;
 
 /// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
 const ROW_GROUP: usize = 1 << 18;
 
 /// A directory that this run may write.
 #[derive(Debug, Clone)]
-pub struct OutputDir(PathBuf);
+pub struct OutputDir {
+    path: PathBuf,
+    /// What errors call it.
+    shown: PathBuf,
+    /// Nobody else writes there while this is held; none of a directory that was not claimed.
+    _lock: Option<Arc<Lock>>,
+}
 
 impl OutputDir {
-    /// Claims a directory before any work is done. It may be absent, empty, hold a run of the same campaign text and
-    /// seed with no more episodes, or what is left of an unfinished run; anything else is refused unless `overwrite`.
+    /// Claims a directory before any work is done, for as long as the value lives. It may be absent, empty, or hold a run
+    /// of the same campaign text and seed with no more episodes; anything else is refused unless `overwrite`. A run that
+    /// was whole when its process ended is brought to its place.
     ///
     /// # Errors
-    /// If the directory holds something else or cannot be written. Nothing is left behind then.
+    /// If the directory holds something else, is held by another process, or cannot be written. Nothing is left behind
+    /// then.
     pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
+        let held = Self::hold(path)?;
+        recover(path)?;
         let other = match Manifest::read(path) {
             Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
                 let what = if run.campaign == campaign.text {
@@ -42,17 +56,12 @@ impl OutputDir {
             ),
             Ok(run) => {
                 let other = other_files(&run, campaign);
-                return Self::claim_for(path, overwrite, &|_| true, other);
+                return held.judged(overwrite, &|_| true, other);
             }
             Err(_) => None,
         };
-        let whole = |name: &str| {
-            let whole = name
-                .strip_prefix('.')
-                .and_then(|name| name.strip_suffix(".part"));
-            is_ours(whole.unwrap_or(name))
-        };
-        Self::claim_for(path, overwrite, &whole, other)
+        // A run that did not end leaves nothing under the names of its files.
+        held.judged(overwrite, &|_| false, other)
     }
 
     /// The same of a directory that may hold files of some names only; `other` is what it holds instead, where that is
@@ -66,6 +75,11 @@ impl OutputDir {
         is_own: &dyn Fn(&str) -> bool,
         other: Option<String>,
     ) -> Result<Self, OutputError> {
+        Self::hold(path)?.judged(overwrite, is_own, other)
+    }
+
+    /// Keeps all others from writing into a directory.
+    fn hold(path: &Path) -> Result<Self, OutputError> {
         let unwritable = |source| OutputError::Unwritable {
             path: path.to_path_buf(),
             source,
@@ -73,30 +87,59 @@ impl OutputDir {
         if path.exists() && !path.is_dir() {
             return Err(unwritable(ErrorKind::NotADirectory.into()));
         }
-        let entries = fs::read_dir(path).into_iter().flatten().flatten();
-        let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-        let foreign = names.any(|name| !is_own(&name));
-        let what = other.or(foreign.then(|| "files, but no finished run".to_string()));
-        if let Some(what) = what.filter(|_| !overwrite) {
-            return Err(OutputError::Taken {
+        match Lock::take(path) {
+            Ok(lock) => Ok(Self {
                 path: path.to_path_buf(),
-                what,
-            });
+                shown: path.to_path_buf(),
+                _lock: Some(Arc::new(lock)),
+            }),
+            Err(NotHeld::Taken(holder)) => Err(OutputError::Busy {
+                path: path.to_path_buf(),
+                holder,
+            }),
+            Err(NotHeld::Failed(source)) => Err(unwritable(source)),
         }
-        try_to_write(path).map_err(unwritable)?;
-        Ok(Self(path.to_path_buf()))
+    }
+
+    /// Refuses a directory that holds something else.
+    fn judged(
+        self,
+        overwrite: bool,
+        is_own: &dyn Fn(&str) -> bool,
+        other: Option<String>,
+    ) -> Result<Self, OutputError> {
+        let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let foreign = names.any(|name| !name.starts_with(ON_THE_WAY) && !is_own(&name));
+        let what = other.or(foreign.then(|| "files, but no finished run".to_string()));
+        match what.filter(|_| !overwrite) {
+            None => Ok(self),
+            Some(what) => Err(OutputError::Taken {
+                path: self.path.clone(),
+                what,
+            }),
+        }
     }
 
     /// A directory that exists already, for an additional file.
     #[must_use]
     pub fn existing(path: &Path) -> Self {
-        Self(path.to_path_buf())
+        Self::shown_as(path, path)
+    }
+
+    /// The same, which errors call by the name of the directory that its files are for.
+    pub(super) fn shown_as(path: &Path, shown: &Path) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            shown: shown.to_path_buf(),
+            _lock: None,
+        }
     }
 
     /// The directory.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.path
     }
 
     /// Writes a file under its final name only when it is complete.
@@ -145,7 +188,7 @@ impl OutputDir {
         encode: impl FnOnce(&mut Sink, &mut polars::prelude::DataFrame) -> Result<(), PolarsError>,
     ) -> Result<(), OutputError> {
         let broken = |source| OutputError::Table {
-            path: self.0.join(name),
+            path: self.shown.join(name),
             source,
         };
         let mut frame = table.to_frame().map_err(broken)?;
@@ -171,19 +214,19 @@ impl OutputDir {
         name: &str,
         fill: impl FnOnce(&mut Sink) -> std::io::Result<()>,
     ) -> Result<(), OutputError> {
-        let (part, whole) = (self.0.join(format!(".{name}.part")), self.0.join(name));
-        let written = fs::create_dir_all(&self.0)
-            .and_then(|()| File::create(&part))
-            .map(Sink::new)
-            .and_then(|mut file| fill(&mut file).and_then(|()| file.finish()))
-            .and_then(|()| fs::rename(&part, &whole));
-        written.map_err(|source| {
-            // The error that is reported is the first.
-            let _ = fs::remove_file(&part);
-            OutputError::Unwritable {
-                path: whole,
-                source,
-            }
+        let whole = self.path.join(name);
+        let written = fs::create_dir_all(&self.path)
+            .and_then(|()| part_in(&self.path))
+            .and_then(|part| {
+                let (file, part) = part.into_parts();
+                let mut file = Sink::new(file);
+                fill(&mut file)?;
+                file.finish()?;
+                part.persist(&whole).map_err(|error| error.error)
+            });
+        written.map_err(|source| OutputError::Unwritable {
+            path: self.shown.join(name),
+            source,
         })
     }
 
@@ -192,28 +235,17 @@ impl OutputDir {
     /// # Errors
     /// If it cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), OutputError> {
-        remove(self.0.join(name))
+        remove(self.path.join(name))
     }
+}
 
-    /// Takes away the manifest of an earlier run, so that the directory does not look whole while it is being filled,
-    /// and what the new run may not replace.
-    ///
-    /// # Errors
-    /// If there is something and it cannot be removed.
-    pub fn begin(&self) -> Result<(), OutputError> {
-        self.remove(MANIFEST)?;
-        let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
-        for entry in entries {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            let report = REPORTS.contains(&&*name);
-            let half = name.starts_with('.') && name.ends_with(".part");
-            if is_replay(&name) || report || half || is_table(&name) {
-                remove(entry.path())?;
-            }
-        }
-        Ok(())
-    }
+/// A file whose name nobody can guess, readable as others that the user makes.
+fn part_in(dir: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(ON_THE_WAY).suffix(".part");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(dir)
 }
 
 /// That a run of the same campaign was made with other files than the campaign names now.
@@ -230,10 +262,9 @@ fn try_to_write(dir: &Path) -> std::io::Result<()> {
         .ancestors()
         .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
         .collect();
-    let probe = dir.join(".urts-mc-probe");
     let tried = fs::create_dir_all(dir)
-        .and_then(|()| File::create(&probe))
-        .and_then(|_| fs::remove_file(&probe));
+        .and_then(|()| part_in(dir))
+        .and_then(NamedTempFile::close);
     // The directories are made again when the first file is written; a run that fails before leaves none behind.
     for dir in absent {
         // One that could not be made cannot be removed either.
@@ -361,23 +392,6 @@ fn remove(path: PathBuf) -> Result<(), OutputError> {
         }
         _ => Ok(()),
     }
-}
-
-/// Whether a file is a table that some run writes.
-fn is_table(name: &str) -> bool {
-    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
-    RUN_TABLES.iter().any(|table| table.name == stem) && ["parquet", "csv"].contains(&extension)
-}
-
-/// Whether a file is the table or a figure of a replay.
-fn is_replay(name: &str) -> bool {
-    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
-    stem.starts_with("replay-") && ["parquet", "html", "svg"].contains(&extension)
-}
-
-/// Whether a file is one that a run writes, beside its manifest.
-fn is_ours(name: &str) -> bool {
-    is_table(name) || is_replay(name) || name == "gains.json" || REPORTS.contains(&name)
 }
 
 /// Whether a path is that of a file that a run in the directory `out` writes itself, whether they are there yet or not.

@@ -35,6 +35,14 @@ pub enum OutputError {
         /// What it holds.
         what: String,
     },
+    /// Another process writes into the directory.
+    #[error("{}: is being written by {holder}; wait until it has ended, or give another directory with --out", path.display())]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+        /// Which process, on which machine.
+        holder: String,
+    },
     /// The directory does not hold a run, or not a whole one.
     #[error("{}: holds no readable run ({reason}); name the output directory of a finished run", path.display())]
     NoRun {
@@ -62,9 +70,16 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether another `--out` would help: such errors are bad usage.
+    /// Whether who asked could have known: a disk that fills up while a run is written is no bad usage.
     #[must_use]
     pub fn is_usage(&self) -> bool {
-        !matches!(self, Self::Table { .. })
+        use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        match self {
+            Self::Table { .. } => false,
+            Self::Unwritable { source, .. } => {
+                ![FileTooLarge, QuotaExceeded, StorageFull].contains(&source.kind())
+            }
+            _ => true,
+        }
     }
 }

@@ -86,9 +86,13 @@ pub(crate) const GIT_REVISION: Option<&str> = option_env!("URTS_MC_GIT_REVISION"
 /// are no settings.
 #[must_use]
 pub fn campaign_hash(campaign: &Campaign) -> String {
+    hash_of(&campaign.text, &campaign.overlay)
+}
+
+fn hash_of(text: &str, overlay: &[Setting]) -> String {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(campaign.text.as_bytes());
-    for setting in &campaign.overlay {
+    hasher.update(text.as_bytes());
+    for setting in overlay {
         // No campaign text has this byte in it, so that no text looks like another with settings.
         hasher.update(b"\0");
         hasher.update(setting.to_string().as_bytes());
@@ -114,9 +118,15 @@ impl Manifest {
     /// Reads the manifest of a run's directory, whose files have to be those that the run wrote.
     ///
     /// # Errors
-    /// If there is none, it is not one, or a file that it counts is missing or was changed.
+    /// If there is none, it is not one, or its campaign or a file that it counts is missing or was changed.
     pub fn read_verified(dir: &Path) -> Result<Self, OutputError> {
         let manifest = Self::read(dir)?;
+        if hash_of(&manifest.campaign, &manifest.overlay) != manifest.campaign_blake3 {
+            return Err(OutputError::Damaged {
+                path: dir.join(MANIFEST),
+                reason: "the campaign in it was changed".to_string(),
+            });
+        }
         verify(dir, &manifest.files)?;
         Ok(manifest)
     }

@@ -3,13 +3,17 @@
 pub mod compare;
 pub mod directory;
 pub mod error;
+pub(crate) mod file_names;
 mod flights;
 pub mod integrity;
 mod labels;
+mod lock;
 pub mod manifest;
+mod replacement;
 pub mod replay;
 pub mod replay_files;
 mod scores_of_run;
+mod staging;
 pub(crate) mod table_reader;
 mod tables;
 pub mod tune;
@@ -31,6 +35,7 @@ pub use labels::Labels;
 use manifest::{GIT_REVISION, Manifest, campaign_hash};
 use rayon::ThreadPool;
 use serde::Serialize;
+use staging::Staging;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -184,7 +189,7 @@ pub fn run_on(
 
     progress(Progress::Writing);
     let found = Found::new(campaign, &tables, &results, &flights);
-    let (files, writing_s) = write_tables(found, &gains, extras.csv, out)?;
+    let (staging, files, writing_s) = staged(found, &gains, extras.csv, out)?;
     times.writing_s = writing_s;
     let mut robots = robots(campaign);
     let manifest = Manifest {
@@ -215,7 +220,8 @@ pub fn run_on(
         cross_check_missing,
         times,
     };
-    out.write(MANIFEST, &pretty(&manifest)?)?;
+    staging.files().write(MANIFEST, &pretty(&manifest)?)?;
+    staging.commit()?;
     Ok(Findings { results, manifest })
 }
 
@@ -258,19 +264,21 @@ fn statistics(
     (results, flights, start.elapsed().as_secs_f64())
 }
 
-/// Writes all but the manifest; returns the records of the files, and the time that it took, s.
-fn write_tables(
+/// All files but the manifest, written beside those of an earlier run; with their records, and the time that it took,
+/// s.
+fn staged(
     found: Found<'_>,
     gains: &[GainSet],
     csv: bool,
     out: &OutputDir,
-) -> Result<(BTreeMap<String, FileRecord>, f64), RunError> {
+) -> Result<(Staging, BTreeMap<String, FileRecord>, f64), RunError> {
     let start = Instant::now();
-    out.begin()?;
-    tables::write(found, csv, out)?;
-    out.write(GAINS, &pretty(&GainSet::to_file(found.campaign, gains))?)?;
-    let files = records(out.path(), counted())?;
-    Ok((files, start.elapsed().as_secs_f64()))
+    let staging = Staging::within(out)?;
+    let files = staging.files();
+    tables::write(found, csv, files)?;
+    files.write(GAINS, &pretty(&GainSet::to_file(found.campaign, gains))?)?;
+    let records = records(files.path(), counted())?;
+    Ok((staging, records, start.elapsed().as_secs_f64()))
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.

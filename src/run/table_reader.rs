@@ -4,6 +4,7 @@ use super::error::OutputError;
 use polars::prelude::{Column as PolarsColumn, DataType, ParquetReader, PolarsResult, SerReader};
 use std::collections::HashMap;
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far
@@ -36,12 +37,17 @@ impl TableReader {
         let Ok(file) = File::open(&path) else {
             return Ok(None);
         };
-        Self::parse(file, wanted)
-            .map(Some)
-            .map_err(|error| OutputError::NoRun {
-                path: dir.to_path_buf(),
-                reason: format!("{name}.parquet: {error}"),
-            })
+        // The library that reads Parquet panics at some files that are damaged.
+        let parsed = catch_unwind(AssertUnwindSafe(|| Self::parse(file, wanted)));
+        let reason = match parsed {
+            Ok(Ok(table)) => return Ok(Some(table)),
+            Ok(Err(error)) => error.to_string(),
+            Err(_) => "it is no whole Parquet file".to_string(),
+        };
+        Err(OutputError::NoRun {
+            path: dir.to_path_buf(),
+            reason: format!("{name}.parquet: {reason}"),
+        })
     }
 
     fn parse(file: File, wanted: impl Fn(&str) -> bool) -> PolarsResult<Self> {

@@ -9,6 +9,7 @@ use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::markdown::{Length, markdown};
 use crate::run::directory::{OutputDir, OutputFile};
 use crate::run::error::OutputError;
+use crate::run::file_names::ON_THE_WAY;
 use std::fs;
 use std::path::Path;
 
@@ -52,11 +53,8 @@ fn is_ours(dir: &Path) -> bool {
         return fs::read_to_string(text).is_ok_and(|text| text.lines().next() == Some(&*title));
     }
     let ours = |name: &str| {
-        let whole = name
-            .strip_prefix('.')
-            .and_then(|name| name.strip_suffix(".part"))
-            .unwrap_or(name);
-        whole == README || whole.starts_with("figure-") && whole.ends_with(".svg")
+        let half = name.starts_with(ON_THE_WAY);
+        half || name == README || name.starts_with("figure-") && name.ends_with(".svg")
     };
     let entries = fs::read_dir(dir).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

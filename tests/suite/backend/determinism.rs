@@ -137,7 +137,10 @@ fn files(
         &|_| (),
     )
     .unwrap();
-    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(out.path())
+    let path = out.path().to_path_buf();
+    // With it goes its lock.
+    drop(out);
+    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(path)
         .unwrap()
         .map(|entry| entry.unwrap())
         .map(|entry| {

@@ -46,6 +46,21 @@ fn a_changed_or_missing_file_is_named_and_nothing_is_made_of_it() {
     for command in &commands {
         assert_eq!(place.program(command).code, 0, "{command:?}");
     }
+    // Nor is the campaign another one than that which was run.
+    let manifest = place.read("out/manifest.json");
+    let edited = manifest.replace("max_rmse = 1.0", "max_rmse = 0.9");
+    assert_ne!(edited, manifest);
+    place.write("out/manifest.json", edited);
+    for command in &commands {
+        let said = place.program(command);
+        assert_eq!(said.code, 2, "{command:?}: {}", said.stderr);
+        assert!(
+            said.stderr.contains("out/manifest.json: is not the file that the run wrote (the campaign in it was changed)"),
+            "{command:?}: {}",
+            said.stderr
+        );
+    }
+    place.write("out/manifest.json", manifest);
     // What is made of the tables may be changed: CSV files are for other programs.
     place.write("out/summary.csv", "mine");
     place.succeeds(&["report", "out"]);

@@ -129,8 +129,105 @@ fn a_disk_that_takes_no_more_is_named_and_not_the_table() {
         said,
         "error: ./far.parquet: cannot be written (File too large (os error 27)); give another file with --out\n"
     );
-    assert_eq!(ended.status.code(), Some(2));
+    assert_eq!(ended.status.code(), Some(1));
     assert_eq!(names(place.0.path()), ["c.toml", "out"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_up_leaves_the_earlier_run_as_it_was() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&RUN);
+    let before = place.everything();
+    let script =
+        "trap '' XFSZ; ulimit -f 32; exec \"$0\" run c.toml --out out --episodes 40 --backend cpu";
+    let ended = std::process::Command::new("bash")
+        .current_dir(place.0.path())
+        .args(["-c", script, env!("CARGO_BIN_EXE_urts-mc")])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{said}");
+    assert!(said.starts_with("error: out/"), "{said}");
+    assert!(
+        said.contains(".parquet: cannot be written (File too large"),
+        "{said}"
+    );
+    assert!(place.everything() == before, "the earlier run changed");
+}
+
+#[test]
+fn a_second_run_into_the_same_directory_is_refused_while_the_first_one_writes() {
+    let place = Place::smoke(&[]);
+    let mut flying = place
+        .command(&["run", "c.toml", "--episodes", "1000000", "--out", "out"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !place.path("out/.urts-mc-lock").exists() {
+        sleep(Duration::from_millis(10));
+    }
+    let holder = format!("out: is being written by process {} on ", flying.id());
+    // Who holds it is written after it is held.
+    while place.read("out/.urts-mc-lock").is_empty() {
+        sleep(Duration::from_millis(10));
+    }
+    for overwrite in [&[][..], &["--overwrite"]] {
+        let arguments = [&RUN[..], overwrite].concat();
+        place.refuses(&arguments, 2, &[&holder, "wait until it has ended"]);
+    }
+    flying.kill().unwrap();
+    flying.wait().unwrap();
+    // What a killed process leaves is taken over.
+    place.succeeds(&RUN);
+    assert_eq!(names(&place.path("out")), FILES);
+}
+
+#[test]
+fn a_run_that_was_whole_when_its_process_ended_is_brought_to_its_place() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "longer", "--episodes", "5"]);
+    place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
+    let longer = place.read_bytes("longer/episodes.parquet");
+    // Ended while files were moved: some of them are there, the earlier manifest is gone.
+    for (moved, begins) in [(false, ".urts-mc-a1b2c3"), (true, ".urts-mc-ready-a1b2c3")] {
+        let on_the_way = format!("out/{begins}");
+        fs::create_dir(place.path(&on_the_way)).unwrap();
+        for name in names(&place.path("longer")) {
+            let (from, to) = (format!("longer/{name}"), format!("{on_the_way}/{name}"));
+            fs::copy(place.path(&from), place.path(&to)).unwrap();
+        }
+        if moved {
+            fs::remove_file(place.path("out/manifest.json")).unwrap();
+            let name = format!("{on_the_way}/summary.parquet");
+            fs::rename(place.path(&name), place.path("out/summary.parquet")).unwrap();
+        }
+        // A shorter run may not replace it.
+        let ended = place.program(&RUN);
+        assert_eq!(ended.code, 2, "{}", ended.stderr);
+        assert!(
+            ended.stderr.contains("holds a run of 5 episodes"),
+            "{}",
+            ended.stderr
+        );
+        assert_eq!(place.read_bytes("out/episodes.parquet"), longer);
+        assert_eq!(names(&place.path("out")), FILES);
+        place.succeeds(&[
+            "replay",
+            "out",
+            "--episode",
+            "4",
+            "--out",
+            "far.parquet",
+            "--overwrite",
+        ]);
+    }
+    // One that was not whole is gone.
+    fs::create_dir(place.path("out/.urts-mc-d4e5f6")).unwrap();
+    place.write("out/.urts-mc-d4e5f6/episodes.parquet", "half");
+    place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "5"]);
+    assert_eq!(names(&place.path("out")), FILES);
 }
 
 #[test]
@@ -188,39 +285,55 @@ fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
 }
 
 #[test]
-fn a_run_that_cannot_finish_leaves_no_half_file_and_no_manifest() {
+fn a_run_that_cannot_take_its_place_leaves_the_earlier_one_whole_and_is_kept() {
     let place = Place::smoke(&[]);
     place.succeeds(&RUN);
     // A folder stands where a file has to go.
     fs::remove_file(place.path("out/comparison.csv")).unwrap();
     fs::create_dir(place.path("out/comparison.csv")).unwrap();
-    let ended = place.program(&RUN);
+    let longer = ["run", "c.toml", "--out", "out", "--episodes", "4"];
+    let ended = place.program(&longer);
     assert_eq!((ended.code, ended.stdout.as_str()), (2, ""));
     let said = ended.stderr;
     assert!(
         said.starts_with("error: out/comparison.csv: cannot be written ("),
         "{said}"
     );
-    let left = names(&place.path("out"));
-    assert!(!left.contains(&"manifest.json".to_string()), "looks whole");
-    assert!(!left.iter().any(|name| name.starts_with('.')), "{left:?}");
-    for name in left.iter().filter(|name| name.ends_with(".parquet")) {
-        let bytes = fs::read(place.path("out").join(name)).unwrap();
-        assert!(
-            bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"),
-            "{name}"
-        );
-    }
-    // Nor does anything take it for a run.
-    place.refuses(
-        &["replay", "out", "--episode", "0"],
-        2,
-        &["no readable run"],
-    );
-    // What it left does not keep it from being run again.
+    assert!(place.read("out/manifest.json").contains("\"episodes\": 3"));
+    place.succeeds(&["replay", "out", "--episode", "0"]);
+    // When it is away, the one that flew comes to its place.
     fs::remove_dir(place.path("out/comparison.csv")).unwrap();
-    place.succeeds(&RUN);
+    let ended = place.program(&RUN);
+    assert_eq!(ended.code, 2);
+    assert!(
+        ended.stderr.contains("holds a run of 4 episodes"),
+        "{}",
+        ended.stderr
+    );
+    place.succeeds(&longer);
     assert_eq!(names(&place.path("out")), FILES);
+}
+
+#[test]
+fn what_stands_without_a_manifest_is_nobodys_run() {
+    let place = Place::smoke(&[]);
+    fs::create_dir(place.path("out")).unwrap();
+    for name in ["report.md", "gains.json", "summary.csv", ".thesis.part"] {
+        let file = format!("out/{name}");
+        place.write(&file, "mine");
+        place.refuses(&RUN, 2, &["out: holds files, but no finished run"]);
+        assert_eq!(place.read(&file), "mine");
+        fs::remove_file(place.path(&file)).unwrap();
+    }
+    // Beside a run they stay, but for what a run has the names of.
+    place.succeeds(&RUN);
+    for name in [".thesis.part", "replay-notes.html"] {
+        place.write(&format!("out/{name}"), "mine");
+    }
+    place.succeeds(&RUN);
+    for name in [".thesis.part", "replay-notes.html"] {
+        assert_eq!(place.read(&format!("out/{name}")), "mine");
+    }
 }
 
 #[test]
@@ -243,6 +356,9 @@ fn a_killed_run_leaves_the_earlier_one_as_it_was_or_nothing() {
         );
         flying.kill().unwrap();
         flying.wait().unwrap();
-        assert!(place.everything() == before, "{out} changed");
+        // Nothing but the lock, which the next run takes over.
+        let mut after = place.everything();
+        after.retain(|path, _| !path.ends_with(".urts-mc-lock") && !path.ends_with("new"));
+        assert!(after == before, "{out} changed");
     }
 }

@@ -182,7 +182,7 @@ fn only_the_papers_own_directory_is_written_again() {
     assert!(!taken(&dir("empty", &[])));
     assert!(!taken(&dir(
         "killed",
-        &[("figure-08.svg", ""), (".figure-10.svg.part", "")]
+        &[("figure-08.svg", ""), (".urts-mc-x7Qa.part", "")]
     )));
     assert!(taken(&dir("other", &[("notes.txt", "mine")])));
     let mixed = [("figure-08.svg", ""), ("notes.txt", "mine")];

@@ -12,6 +12,7 @@ use urts_mc::results::compare_pairs;
 use urts_mc::results::scores::{Scores, Status};
 use urts_mc::run::compare::{Asked, CompareError, RunComparison, claim, compare_runs, write};
 use urts_mc::run::directory::OutputDir;
+use urts_mc::run::manifest::{Manifest, campaign_hash};
 use urts_mc::run::{Extras, run};
 use urts_mc::simulation::RunOptions;
 
@@ -212,6 +213,10 @@ fn runs_that_met_something_else_are_refused_and_what_differs_is_named() {
     let forged = manifest
         .replace("\"seed\": 7", "\"seed\": 2026")
         .replace("seed=7", "seed=2026");
+    fs::write(other.join("manifest.json"), &forged).unwrap();
+    let forged_campaign = Manifest::read(&other).unwrap().campaign().unwrap();
+    let hash = Manifest::read(&other).unwrap().campaign_blake3;
+    let forged = forged.replace(&hash, &campaign_hash(&forged_campaign));
     fs::write(other.join("manifest.json"), forged).unwrap();
     let error = compare_runs(&a, &other, &Asked::default()).unwrap_err();
     assert!(matches!(error, CompareError::Differ { .. }));
@@ -248,6 +253,7 @@ fn a_longer_run_is_compared_as_far_as_the_shorter_one_goes_and_files_are_the_sam
         let place = runs.0.path().join(name);
         let out = claim(&place, [&a, &b], false).unwrap();
         write(&found, &comparison(&found), &out).unwrap();
+        drop(out);
         let names = fs::read_dir(&place).unwrap();
         let mut names: Vec<PathBuf> = names.map(|entry| entry.unwrap().path()).collect();
         names.sort();

@@ -42,6 +42,7 @@ fn measure(tuning: &Tuning, of: &Evaluation, name: &str) -> f64 {
 fn written(tuning: &Tuning, place: &Path) -> Vec<(String, Vec<u8>)> {
     let dir = claim(place, &tuning.campaign, false).unwrap();
     write(tuning, &urts_mc::report::tuning(tuning), &dir).unwrap();
+    drop(dir);
     let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(place)
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -213,7 +213,9 @@ fn a_stopped_run_is_whole_says_why_it_ended_and_has_the_bounds_that_hold() {
     );
     assert!(replay(out.path(), manifest.episodes - 1, "pid", None).is_ok());
     assert!(replay(out.path(), manifest.episodes, "pid", None).is_err());
-    assert!(OutputDir::claim(out.path(), &campaign, false).is_ok());
+    let path = out.path().to_path_buf();
+    drop(out);
+    assert!(OutputDir::claim(&path, &campaign, false).is_ok());
     // The bounds of its failure rates are those that hold at any number, of every controller.
     for row in &findings.results.summary {
         let rate = &row.failures;

@@ -1,0 +1,116 @@
+//! Who writes into a directory: one run at a time.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+
+/// The file that says who holds a directory. The system frees its lock when the holder ends, however that ends, so one
+/// that is left behind is taken over.
+pub(super) const LOCK: &str = ".urts-mc-lock";
+
+/// A directory that nobody else writes while this is there.
+#[derive(Debug)]
+pub(super) struct Lock {
+    file: File,
+    path: PathBuf,
+    /// Directories that were made for it, the innermost first.
+    made: Vec<PathBuf>,
+}
+
+/// Why a directory is not held.
+pub(super) enum NotHeld {
+    /// By whom it is.
+    Taken(String),
+    /// What went wrong.
+    Failed(std::io::Error),
+}
+
+impl Lock {
+    /// Takes a directory, which is made if it is not there.
+    pub(super) fn take(dir: &Path) -> Result<Self, NotHeld> {
+        let absent = dir.ancestors();
+        let absent = absent.take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists());
+        let made: Vec<PathBuf> = absent.map(Path::to_path_buf).collect();
+        let created = fs::create_dir_all(dir).inspect_err(|_| undo(&made));
+        created.map_err(NotHeld::Failed)?;
+        let path = dir.join(LOCK);
+        let taken = loop {
+            let mut options = OpenOptions::new();
+            let options = options.read(true).write(true).create(true).truncate(false);
+            let file = match options.open(&path) {
+                Ok(file) => file,
+                Err(error) => break Err(NotHeld::Failed(error)),
+            };
+            match file.try_lock() {
+                // Whoever held it may have taken its file away after it was opened here.
+                Ok(()) if is_at(&file, &path) => break Ok(file),
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => break Err(NotHeld::Taken(holder(file))),
+                // A file system without locks has none to keep.
+                Err(TryLockError::Error(_)) => break Ok(file),
+            }
+        };
+        let mut file = taken.inspect_err(|_| undo(&made))?;
+        // Of use to people alone.
+        let said = format!("{} on {}\n", process::id(), host());
+        let written = file
+            .set_len(0)
+            .and_then(|()| file.write_all(said.as_bytes()));
+        written.map_err(NotHeld::Failed)?;
+        Ok(Self { file, path, made })
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // What cannot be taken away is taken over by the next run.
+        let _ = fs::remove_file(&self.path);
+        let _ = self.file.unlock();
+        undo(&self.made);
+    }
+}
+
+/// Takes away directories in which nothing was written.
+fn undo(made: &[PathBuf]) {
+    for dir in made {
+        // One that holds something stays.
+        let _ = fs::remove_dir(dir);
+    }
+}
+
+/// Whether an open file is still the one of its path.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+    let (own, there) = (
+        file.metadata().map(identity),
+        fs::metadata(path).map(identity),
+    );
+    matches!((own, there), (Ok(own), Ok(there)) if own == there)
+}
+
+/// Where an open file cannot be removed, it is.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
+/// Who wrote itself into a lock.
+fn holder(mut file: File) -> String {
+    let mut said = String::new();
+    let read = file.rewind().and_then(|()| file.read_to_string(&mut said));
+    match (read, said.trim()) {
+        (Ok(_), said) if !said.is_empty() => format!("process {said}"),
+        _ => "another process".to_string(),
+    }
+}
+
+/// The name of this machine.
+fn host() -> String {
+    let named = fs::read_to_string("/proc/sys/kernel/hostname");
+    let named = named.ok().or_else(|| std::env::var("HOSTNAME").ok());
+    let named = named.or_else(|| std::env::var("COMPUTERNAME").ok());
+    named.map_or("this machine".to_string(), |name| name.trim().to_string())
+}
