@@ -28,20 +28,23 @@ pub struct OutputDir {
     /// What errors call it.
     shown: PathBuf,
     /// Nobody else writes there while this is held; none of a directory that was not claimed.
-    _lock: Option<Arc<Lock>>,
+    lock: Option<Arc<Lock>>,
 }
 
 impl OutputDir {
-    /// Claims a directory before any work is done, for as long as the value lives. It may be absent, empty, or hold a run
-    /// of the same campaign text and seed with no more episodes; anything else is refused unless `overwrite`. A run that
-    /// was whole when its process ended is brought to its place.
+    /// Claims a directory before any work is done, for as long as the value lives. It may be absent, empty, or hold a
+    /// run of the same campaign text and seed with no more episodes; anything else is refused unless `overwrite`. A
+    /// run that was whole when its process ended is brought to its place.
     ///
     /// # Errors
     /// If the directory holds something else, is held by another process, or cannot be written. Nothing is left behind
     /// then.
     pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
         let held = Self::hold(path)?;
-        recover(path)?;
+        // Where there are no locks, what is there may be somebody's who is still writing it.
+        if held.lock.as_ref().is_some_and(|lock| lock.excludes()) {
+            recover(path)?;
+        }
         let other = match Manifest::read(path) {
             Ok(run) if run.campaign_blake3 != campaign_hash(campaign) => {
                 let what = if run.campaign == campaign.text {
@@ -91,7 +94,7 @@ impl OutputDir {
             Ok(lock) => Ok(Self {
                 path: path.to_path_buf(),
                 shown: path.to_path_buf(),
-                _lock: Some(Arc::new(lock)),
+                lock: Some(Arc::new(lock)),
             }),
             Err(NotHeld::Taken(holder)) => Err(OutputError::Busy {
                 path: path.to_path_buf(),
@@ -132,7 +135,7 @@ impl OutputDir {
         Self {
             path: path.to_path_buf(),
             shown: shown.to_path_buf(),
-            _lock: None,
+            lock: None,
         }
     }
 
@@ -215,15 +218,18 @@ impl OutputDir {
         fill: impl FnOnce(&mut Sink) -> std::io::Result<()>,
     ) -> Result<(), OutputError> {
         let whole = self.path.join(name);
-        let written = fs::create_dir_all(&self.path)
-            .and_then(|()| part_in(&self.path))
-            .and_then(|part| {
-                let (file, part) = part.into_parts();
-                let mut file = Sink::new(file);
-                fill(&mut file)?;
-                file.finish()?;
-                part.persist(&whole).map_err(|error| error.error)
-            });
+        // The folder of a run that is on the way is there, or somebody took it away.
+        let made = match self.path == self.shown {
+            true => fs::create_dir_all(&self.path),
+            false => Ok(()),
+        };
+        let written = made.and_then(|()| part_in(&self.path)).and_then(|part| {
+            let (file, part) = part.into_parts();
+            let mut file = Sink::new(file);
+            fill(&mut file)?;
+            file.finish()?;
+            part.persist(&whole).map_err(|error| error.error)
+        });
         written.map_err(|source| OutputError::Unwritable {
             path: self.shown.join(name),
             source,

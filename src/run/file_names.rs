@@ -5,6 +5,8 @@ use crate::results::files::RUN_TABLES;
 
 /// What the names of all that is only on the way begin with.
 pub(crate) const ON_THE_WAY: &str = ".urts-mc-";
+/// What the name of the folder of a run that is on the way ends with.
+pub(super) const A_RUN: &str = ".run";
 
 /// Whether a file is a table that some run writes.
 fn is_table(name: &str) -> bool {

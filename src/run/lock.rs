@@ -9,6 +9,9 @@ use std::process;
 /// that is left behind is taken over.
 pub(super) const LOCK: &str = ".urts-mc-lock";
 
+/// Bytes that a lock says at most.
+const LONGEST: usize = 400;
+
 /// A directory that nobody else writes while this is there.
 #[derive(Debug)]
 pub(super) struct Lock {
@@ -16,6 +19,8 @@ pub(super) struct Lock {
     path: PathBuf,
     /// Directories that were made for it, the innermost first.
     made: Vec<PathBuf>,
+    /// Whether the file system keeps locks.
+    excludes: bool,
 }
 
 /// Why a directory is not held.
@@ -36,29 +41,57 @@ impl Lock {
         created.map_err(NotHeld::Failed)?;
         let path = dir.join(LOCK);
         let taken = loop {
-            let mut options = OpenOptions::new();
-            let options = options.read(true).write(true).create(true).truncate(false);
-            let file = match options.open(&path) {
+            let file = match open(&path) {
                 Ok(file) => file,
                 Err(error) => break Err(NotHeld::Failed(error)),
             };
             match file.try_lock() {
                 // Whoever held it may have taken its file away after it was opened here.
-                Ok(()) if is_at(&file, &path) => break Ok(file),
+                Ok(()) if is_at(&file, &path) => break Ok((file, true)),
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => break Err(NotHeld::Taken(holder(file))),
                 // A file system without locks has none to keep.
-                Err(TryLockError::Error(_)) => break Ok(file),
+                Err(TryLockError::Error(_)) => break Ok((file, false)),
             }
         };
-        let mut file = taken.inspect_err(|_| undo(&made))?;
+        let (mut file, excludes) = taken.inspect_err(|_| undo(&made))?;
         // Of use to people alone.
         let said = format!("{} on {}\n", process::id(), host());
-        let written = file
+        let _ = file
             .set_len(0)
             .and_then(|()| file.write_all(said.as_bytes()));
-        written.map_err(NotHeld::Failed)?;
-        Ok(Self { file, path, made })
+        Ok(Self {
+            file,
+            path,
+            made,
+            excludes,
+        })
+    }
+
+    /// Whether nobody else can hold the directory; where a file system keeps no locks, somebody may.
+    pub(super) fn excludes(&self) -> bool {
+        self.excludes
+    }
+}
+
+/// Opens the lock of a directory, if what has its name is one.
+fn open(path: &Path) -> std::io::Result<File> {
+    let other = || std::io::Error::other(format!("{} is no lock", path.display()));
+    if fs::symlink_metadata(path).is_ok_and(|there| !there.is_file()) {
+        return Err(other());
+    }
+    let mut options = OpenOptions::new();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let mut file = options.open(path)?;
+    let mut said = String::new();
+    // What cannot be read is locked by somebody, on some systems.
+    let is_lock = match file.read_to_string(&mut said) {
+        Ok(_) => said.is_empty() || said.contains(" on "),
+        Err(error) => error.kind() != std::io::ErrorKind::InvalidData,
+    };
+    match is_lock && said.len() <= LONGEST {
+        true => file.rewind().map(|()| file),
+        false => Err(other()),
     }
 }
 

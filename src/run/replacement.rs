@@ -1,7 +1,7 @@
 //! A run in the place of an earlier one, wherever a process may end.
 
 use super::error::{MANIFEST, OutputError};
-use super::file_names::{ON_THE_WAY, is_replaced};
+use super::file_names::{A_RUN, ON_THE_WAY, is_replaced};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -16,23 +16,43 @@ const READY: &str = ".urts-mc-ready-";
 pub(super) fn recover(target: &Path) -> Result<(), OutputError> {
     let entries = fs::read_dir(target).into_iter().flatten().flatten();
     for entry in entries {
-        let path = entry.path();
+        // A link is followed by nobody.
+        let is_dir = entry.file_type().is_ok_and(|kind| kind.is_dir());
         let name = entry.file_name();
-        if !name.to_string_lossy().starts_with(ON_THE_WAY) {
+        let Some(ready) = is_ready(&name.to_string_lossy()).filter(|_| is_dir) else {
             continue;
-        }
-        if path.join(MANIFEST).is_file() {
-            take_places(&path, target)?;
-            continue;
-        }
-        let removed = match (path.is_dir(), path.extension()) {
-            (true, _) => fs::remove_dir_all(&path),
-            (false, Some(end)) if end == "part" => fs::remove_file(&path),
-            (false, _) => Ok(()),
         };
-        removed.map_err(|source| OutputError::Unwritable { path, source })?;
+        let path = entry.path();
+        let ended = match (path.join(MANIFEST).try_exists(), ready) {
+            (Ok(true), _) => {
+                take_places(&path, target)?;
+                Ok(())
+            }
+            // Its manifest was the last to leave.
+            (Ok(false), true) => fs::remove_dir(&path),
+            (Ok(false), false) => fs::remove_dir_all(&path),
+            (Err(error), _) => Err(error),
+        };
+        ended.map_err(|source| OutputError::Unwritable { path, source })?;
     }
     Ok(())
+}
+
+/// Whether the folder of a run, by its name, has nothing left of an earlier one in its way; none if it is no such
+/// folder.
+fn is_ready(name: &str) -> Option<bool> {
+    let of = |begin: &str| {
+        let letters = name.strip_prefix(begin)?.strip_suffix(A_RUN)?;
+        letters
+            .chars()
+            .all(|letter| letter.is_ascii_alphanumeric())
+            .then_some(())
+    };
+    match (of(READY), of(ON_THE_WAY)) {
+        (Some(()), _) => Some(true),
+        (None, Some(())) => Some(false),
+        (None, None) => None,
+    }
 }
 
 /// Moves files to where they belong, the manifest last: a directory that has it is whole. Wherever this is interrupted,
@@ -99,8 +119,15 @@ fn remove(path: &Path) -> std::io::Result<()> {
 
 /// Brings the names in a directory to the disk, where directories can be opened.
 fn sync(dir: &Path) -> std::io::Result<()> {
-    match cfg!(unix) {
-        true => File::open(dir)?.sync_all(),
-        false => Ok(()),
+    use std::io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(dir)?.sync_all() {
+        // Some file systems do this for files alone.
+        Err(error) if [InvalidInput, PermissionDenied, Unsupported].contains(&error.kind()) => {
+            Ok(())
+        }
+        synced => synced,
     }
 }

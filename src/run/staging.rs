@@ -3,7 +3,7 @@
 
 use super::directory::OutputDir;
 use super::error::OutputError;
-use super::file_names::ON_THE_WAY;
+use super::file_names::{A_RUN, ON_THE_WAY};
 use super::replacement::take_places;
 use std::fs;
 use std::path::PathBuf;
@@ -27,6 +27,7 @@ impl Staging {
         let made = fs::create_dir_all(&target).and_then(|()| {
             tempfile::Builder::new()
                 .prefix(ON_THE_WAY)
+                .suffix(A_RUN)
                 .tempdir_in(&target)
         });
         let place = made.map_err(|source| OutputError::Unwritable {

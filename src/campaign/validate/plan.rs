@@ -53,8 +53,8 @@ impl Check<'_> {
         Ok(names)
     }
 
-    /// A name that people read: one line, not too long, without blanks at its ends, and nothing that a spreadsheet takes
-    /// for a formula.
+    /// A name that people read: one line, not too long, without blanks at its ends, and nothing that a spreadsheet
+    /// takes for a formula.
     fn title(&self, key: &str, name: &str) -> Result<(), CampaignError> {
         let fits = !name.is_empty() && name.chars().count() <= LONGEST_NAME;
         let limit = if !fits || name.trim() != name || name.chars().any(is_hidden) {

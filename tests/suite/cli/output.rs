@@ -191,7 +191,10 @@ fn a_run_that_was_whole_when_its_process_ended_is_brought_to_its_place() {
     place.succeeds(&["run", "c.toml", "--out", "out", "--csv"]);
     let longer = place.read_bytes("longer/episodes.parquet");
     // Ended while files were moved: some of them are there, the earlier manifest is gone.
-    for (moved, begins) in [(false, ".urts-mc-a1b2c3"), (true, ".urts-mc-ready-a1b2c3")] {
+    for (moved, begins) in [
+        (false, ".urts-mc-a1b2c3.run"),
+        (true, ".urts-mc-ready-a1b2c3.run"),
+    ] {
         let on_the_way = format!("out/{begins}");
         fs::create_dir(place.path(&on_the_way)).unwrap();
         for name in names(&place.path("longer")) {
@@ -224,8 +227,8 @@ fn a_run_that_was_whole_when_its_process_ended_is_brought_to_its_place() {
         ]);
     }
     // One that was not whole is gone.
-    fs::create_dir(place.path("out/.urts-mc-d4e5f6")).unwrap();
-    place.write("out/.urts-mc-d4e5f6/episodes.parquet", "half");
+    fs::create_dir(place.path("out/.urts-mc-d4e5f6.run")).unwrap();
+    place.write("out/.urts-mc-d4e5f6.run/episodes.parquet", "half");
     place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "5"]);
     assert_eq!(names(&place.path("out")), FILES);
 }
@@ -282,6 +285,38 @@ fn files_of_an_earlier_run_that_the_new_one_does_not_write_are_removed() {
     assert_eq!(names(&place.path("out")).len(), FILES.len() + 7);
     place.succeeds(&["run", "c.toml", "--out", "out", "--episodes", "4"]);
     assert_eq!(names(&place.path("out")), FILES);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_with_the_names_of_what_is_on_the_way_lead_nowhere() {
+    use std::os::unix::fs::symlink;
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "good"]);
+    place.succeeds(&RUN);
+    let good = tables(&place);
+    symlink("../good", place.path("out/.urts-mc-a1b2c3.run")).unwrap();
+    place.succeeds(&RUN);
+    assert!(tables(&place) == good && place.path("out/.urts-mc-a1b2c3.run").is_symlink());
+    // What has the lock's name and is none is not written.
+    place.write("thesis.tex", "mine");
+    symlink("../thesis.tex", place.path("out/.urts-mc-lock")).unwrap();
+    place.refuses(&RUN, 2, &["out: cannot be written (", "is no lock"]);
+    assert_eq!(place.read("thesis.tex"), "mine");
+    fs::remove_file(place.path("out/.urts-mc-lock")).unwrap();
+    place.write("out/.urts-mc-lock", "mine");
+    place.refuses(&RUN, 2, &["is no lock"]);
+    assert_eq!(place.read("out/.urts-mc-lock"), "mine");
+}
+
+/// The files of the run in `good`.
+#[cfg(unix)]
+fn tables(place: &Place) -> Vec<(String, Vec<u8>)> {
+    let of = |name: String| {
+        let bytes = place.read_bytes(&format!("good/{name}"));
+        (name, bytes)
+    };
+    names(&place.path("good")).into_iter().map(of).collect()
 }
 
 #[test]
