@@ -226,7 +226,14 @@ impl Check<'_> {
             other => {
                 let text = other.to_string();
                 let (limit, remedy) = text.rsplit_once("; ").unwrap_or((&text, "correct it"));
-                let tried = other.is_of_the_gait().then(|| walkable(&gait, plan));
+                let length_m = points.windows(2).map(|ends| {
+                    let [[x0, y0], [x1, y1]] = [ends[0], ends[1]];
+                    (x1 - x0).hypot(y1 - y0)
+                });
+                let length_m = length_m.sum();
+                let tried = other
+                    .is_of_the_gait()
+                    .then(|| walkable(&gait, length_m, plan));
                 let remedy = tried.unwrap_or_else(|| remedy.to_string());
                 self.invalid(key, format!("{points:?}"), limit, &remedy)
             }
@@ -296,8 +303,12 @@ impl Check<'_> {
 }
 
 /// The nearest gait that was found to give a walk, as a remedy.
-fn walkable(gait: &Gait, plan: impl FnMut(&Gait) -> Result<Walk, WalkError>) -> String {
-    let Some(found) = nearest(gait, plan) else {
+fn walkable(
+    gait: &Gait,
+    length_m: f64,
+    plan: impl FnMut(&Gait) -> Result<Walk, WalkError>,
+) -> String {
+    let Some(found) = nearest(gait, length_m, plan) else {
         return "no other height of the pelvis and no shorter or slower steps were found that help: take a line with wider bends, or \
                 say how the robot stands (agent.standing, agent.sole)"
             .to_string();

@@ -16,10 +16,14 @@ const WEIGHT: f64 = 3.0;
 /// Digits of what is proposed, 1/m.
 const ROUNDING: f64 = 1e3;
 
+/// Samples that are planned in the search: it takes seconds.
+const MOST_SAMPLES: f64 = 1e6;
+
 /// The gait that differs least from `gait` in the height of its pelvis, the length and height of its steps and their
-/// period, and with which `plan` finds a walk; none where no such gait is found.
+/// period, and with which `plan` finds a walk over a line of so many metres; none where no such gait is found.
 pub fn nearest<T>(
     gait: &Gait,
+    length_m: f64,
     mut plan: impl FnMut(&Gait) -> Result<T, WalkError>,
 ) -> Option<Gait> {
     let mut candidates: Vec<(f64, Gait)> = Vec::new();
@@ -32,8 +36,15 @@ pub fn nearest<T>(
         }
     }
     candidates.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    let mut planned = 0.0;
     let mut gaits = candidates.into_iter().map(|(_, gait)| gait);
-    gaits.find(|candidate| plan(candidate).is_ok())
+    gaits
+        .by_ref()
+        .take_while(|gait| {
+            planned += length_m / gait.step_length_m * gait.step_period_s / gait.sampling_s;
+            planned < MOST_SAMPLES
+        })
+        .find(|candidate| plan(candidate).is_ok())
 }
 
 fn changed(gait: &Gait, lower: f64, shorter: f64, slower: f64) -> Gait {

@@ -59,7 +59,7 @@ pub(super) fn find(
             !still && !first.contains(&joint.name) && !second.contains(&joint.name)
         };
         let found = Found {
-            pelvis: pelvis.map_or_else(|| tree.carrier_of(&first[0]), str::to_string),
+            pelvis: pelvis.map_or_else(|| both(tree, carrier, [first, second]), str::to_string),
             locked: urdf
                 .joints
                 .iter()
@@ -75,6 +75,23 @@ pub(super) fn find(
         }
     }
     Ok(best.map(|(_, found)| found))
+}
+
+/// The link that carries both legs, or, where each has its own, the first of those that these are fixed to.
+fn both(tree: &Tree<'_>, first: usize, legs: [&[String]; 2]) -> String {
+    let [one, other] = legs.map(|joints| tree.carrier_of(&joints[0]));
+    if one == other {
+        return one;
+    }
+    tree.name(first).to_string()
+}
+
+/// Whether a joint begins a chain of six revolute ones.
+///
+/// # Errors
+/// If a frame on the way is none.
+pub(super) fn is_leg(tree: &Tree<'_>, hip: &Moving<'_>) -> Result<bool, RobotError> {
+    Ok(chain(tree, hip)?.is_some())
 }
 
 /// Six revolute joints, one after the other.

@@ -59,14 +59,16 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     let mut locked = options.locked.clone();
     let mut pelvis = options.pelvis.clone();
     // Arms, a waist, a head: what is no leg is held still.
-    if moves_more_than_legs(&tree, pelvis.as_deref())? {
+    let moving = moving(&tree, pelvis.as_deref())?;
+    if moving.is_none_or(|legs| legs < 2) {
         let found = legs::find(&tree, &urdf, pelvis.as_deref())?;
         if let Some(found) = found {
             let own = found.locked.iter().filter(|name| !locked.contains(name));
-            notes.push(legs::held(&own.cloned().collect::<Vec<_>>()));
-            locked = found.locked;
+            let own: Vec<String> = own.cloned().collect();
+            notes.push(legs::held(&own));
+            locked.extend(own);
             pelvis = Some(found.pelvis);
-        } else if pelvis.is_none() {
+        } else if pelvis.is_none() && moving.is_none() {
             return Err(legs::none(&check, &tree.limbs()?));
         }
     }
@@ -88,8 +90,12 @@ pub fn parse(text: &str, path: &Path, options: &UrdfOptions) -> Result<Robot, Ro
     notes.extend(feet::assumed(options));
     let height_m = height_m(&legs, &standing_rad);
     // A root frame on the ground (REP-120) is no pelvis: the link that carries the legs is.
-    let carrier = tree.carrier_of(&left.joint.name);
-    if options.pelvis.is_none() && height_m <= 0.0 && !tree.is_named(pelvis, &carrier) {
+    let [carrier, other] = [left, right].map(|hip| tree.carrier_of(&hip.joint.name));
+    if options.pelvis.is_none()
+        && carrier == other
+        && height_m <= 0.0
+        && !tree.is_named(pelvis, &carrier)
+    {
         let options = UrdfOptions {
             pelvis: Some(carrier.clone()),
             ..options.clone()
@@ -207,13 +213,19 @@ fn is_left(
     Ok(first_is_left.unwrap_or(true))
 }
 
-/// Whether the pelvis moves more than two joints, or none of its limbs is a leg.
-fn moves_more_than_legs(tree: &Tree<'_>, pelvis: Option<&str>) -> Result<bool, RobotError> {
-    match tree.pelvis(pelvis) {
-        Ok(pelvis) => Ok(tree.rigid(pelvis)?.moving.len() != 2),
-        // Something that moves carries it.
-        Err(_) => Ok(true),
+/// How many of the two joints that the pelvis moves begin a leg; none if it moves more or fewer than two.
+fn moving(tree: &Tree<'_>, pelvis: Option<&str>) -> Result<Option<usize>, RobotError> {
+    // Something that moves may carry it.
+    let Ok(pelvis) = tree.pelvis(pelvis) else {
+        return Ok(None);
+    };
+    let moving = tree.rigid(pelvis)?.moving;
+    if moving.len() != 2 {
+        return Ok(None);
     }
+    let legs = moving.iter().map(|hip| legs::is_leg(tree, hip));
+    let legs: Vec<bool> = legs.collect::<Result<_, _>>()?;
+    Ok(Some(legs.into_iter().filter(|is_leg| *is_leg).count()))
 }
 
 /// What is assumed of the joints of the legs where the file does not say it, or says what the model has not.
@@ -265,6 +277,11 @@ fn assumed(urdf: &Urdf, legs: &[Leg; 2], options: &UrdfOptions) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// A limit, of those that are none the largest number; what is no number stays so.
+fn finite(limit: f64) -> f64 {
+    if limit > LARGEST { LARGEST } else { limit }
 }
 
 /// The leg that begins with a joint.
@@ -344,8 +361,8 @@ fn joint(
         q_min: drive.limit.lower,
         q_max: drive.limit.upper,
         // Beyond every limit of a number it is none; a note says so.
-        rate_max: drive.limit.velocity.min(LARGEST),
-        torque_max: drive.limit.effort.min(LARGEST),
+        rate_max: finite(drive.limit.velocity),
+        torque_max: finite(drive.limit.effort),
         armature: armature
             .or(drive.armature)
             .unwrap_or(DEFAULT_ARMATURE_KG_M2),

@@ -161,7 +161,7 @@ fn published_humanoids_walk_with_default_keys_or_a_joint_that_cannot_is_named() 
                 );
                 // The ankle of one bends a thousandth of a radian too far, which a lower pelvis mends; that of
                 // the other is not level at q = 0, as is taken for granted of a file that does not say it.
-                let near = nearest(&gait, |gait| Walk::plan(&robot, &line, gait));
+                let near = nearest(&gait, 2.0, |gait| Walk::plan(&robot, &line, gait));
                 assert_eq!(
                     near.is_some(),
                     robot.name == "engineai_t800",

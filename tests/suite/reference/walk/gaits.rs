@@ -53,7 +53,7 @@ fn the_nearest_gait_can_be_walked_and_differs_no_more_than_it_has_to() {
         ..Gait::G1
     };
     assert!(plan(&high).is_err());
-    let found = nearest(&high, plan).unwrap();
+    let found = nearest(&high, 1.2, plan).unwrap();
     assert!(plan(&found).is_ok());
     let changed = found.unlike(&high);
     assert!(
@@ -61,8 +61,21 @@ fn the_nearest_gait_can_be_walked_and_differs_no_more_than_it_has_to() {
         "{changed:?}"
     );
     // What can be walked is its own nearest.
-    assert_eq!(nearest(&Gait::G1, plan), Some(Gait::G1));
+    assert_eq!(nearest(&Gait::G1, 1.2, plan), Some(Gait::G1));
     // No gait helps where nothing can be planned.
-    let never = |_: &Gait| Err::<Walk, _>(WalkError::TooFewWaypoints { count: 0 });
-    assert_eq!(nearest(&Gait::G1, never), None);
+    let mut tried = 0;
+    let mut never = |_: &Gait| {
+        tried += 1;
+        Err::<Walk, _>(WalkError::TooFewWaypoints { count: 0 })
+    };
+    assert_eq!(nearest(&Gait::G1, 1.2, &mut never), None);
+    // Of a long line fewer are tried: each takes longer.
+    let all = tried;
+    tried = 0;
+    let mut never = |_: &Gait| {
+        tried += 1;
+        Err::<Walk, _>(WalkError::TooFewWaypoints { count: 0 })
+    };
+    assert_eq!(nearest(&Gait::G1, 100.0, &mut never), None);
+    assert!(all > 200 && (1..100).contains(&tried), "{all} {tried}");
 }

@@ -213,6 +213,47 @@ fn arms_of_six_joints_are_no_legs_where_something_hangs_lower() {
 }
 
 #[test]
+fn legs_on_brackets_of_their_own_have_the_pelvis_that_carries_the_brackets() {
+    let bracket = |side: &str| {
+        format!(
+            "<link name=\"{side}_bracket\"/><joint name=\"{side}_mount\" type=\"fixed\"><origin xyz=\"0 0 0\" rpy=\"0 0 0\"/>\
+             <parent link=\"pelvis\"/><child link=\"{side}_bracket\"/></joint>"
+        )
+    };
+    let more = bracket("l") + &bracket("r") + &limb("neck", "pelvis");
+    let mut text = plain().replace("</robot>", &format!("{more}</robot>"));
+    for side in ["l", "r"] {
+        let hip = format!("<parent link=\"pelvis\"/><child link=\"{side}_hip_pitch_link\"/>");
+        assert!(text.contains(&hip), "{hip}");
+        text = text.replace(
+            &hip,
+            &hip.replace("\"pelvis\"", &format!("\"{side}_bracket\"")),
+        );
+    }
+    let (robot, plain) = (read(&text), read(&plain()));
+    assert_eq!(robot.legs, plain.legs);
+    assert!((robot.mass_kg() - plain.mass_kg() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_head_and_a_waist_on_the_trunk_are_no_legs_though_they_are_two() {
+    let trunk = format!(
+        r#"<link name="trunk"><inertial><mass value="5"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+        <joint name="waist" type="revolute"><parent link="trunk"/><child link="pelvis"/><axis xyz="0 0 1"/>
+        <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>{}"#,
+        limb("head", "trunk")
+    );
+    let robot = read(&plain().replace("</robot>", &format!("{trunk}</robot>")));
+    assert_eq!(robot.legs, read(&plain()).legs);
+    let held = robot
+        .notes
+        .iter()
+        .find(|note| note.contains("held at zero"))
+        .unwrap();
+    assert!(held.contains("waist") && held.contains("head"), "{held}");
+}
+
+#[test]
 fn what_simulators_do_to_parts_that_are_held_still_is_noted() {
     let whole = with_upper_body();
     let padded = whole.replacen(
@@ -235,6 +276,9 @@ fn what_simulators_do_to_parts_that_are_held_still_is_noted() {
     // On a leg it is no longer a small matter.
     let leg = plain().replacen("ixx=\"", "ixx=\"9", 2);
     assert!(parse(&leg, &UrdfOptions::default()).is_err());
+    // No number is no limit.
+    let none = plain().replace("velocity=\"3.2e1\"", "velocity=\"nan\"");
+    assert!(parse(&none, &UrdfOptions::default()).is_err());
     // A limit beyond every number is none.
     let free = plain().replace("velocity=\"3.2e1\"", "velocity=\"1e9\"");
     let robot = read(&free);
