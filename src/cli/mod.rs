@@ -60,6 +60,7 @@ fn elsewhere(command: &Command) -> &'static str {
             "a report stands beside the tables of its run: make their directory writable, or copy it"
         }
         Command::Replay(_) => "give another file with --out",
+        Command::Robot(_) => "give another file with --svg",
         _ => "give another directory with --out",
     }
 }

@@ -5,11 +5,13 @@ use super::exit::{Code, Failure};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use urts_mc::agent::Agent;
+use urts_mc::agent::robot::Robot;
 use urts_mc::campaign::{Campaign, CampaignError, Setting};
 use urts_mc::reference::Reference;
 use urts_mc::reference::walk::Walk;
 use urts_mc::report::{robot_picture, terminal};
 use urts_mc::run::directory::OutputFile;
+use urts_mc::util::hidden::spelled_out;
 
 #[derive(Debug, Args)]
 pub(crate) struct RobotArguments {
@@ -55,7 +57,7 @@ pub(super) fn robot_command(arguments: &RobotArguments) -> Result<Code, Failure>
             "--set agent.kind: a robot is a biped".into(),
         ));
     };
-    let robot = &biped.robot;
+    let robot = &visible(&biped.robot);
     let walk = walk(arguments)?;
     if let Some(svg) = &arguments.svg {
         OutputFile::claim(svg)?.write(robot_picture(robot).as_bytes())?;
@@ -66,6 +68,18 @@ pub(super) fn robot_command(arguments: &RobotArguments) -> Result<Code, Failure>
         print(&terminal::robot(robot, &walk))?;
     }
     Ok(Code::Done)
+}
+
+/// The same with all that its file says in characters that can be seen.
+fn visible(robot: &Robot) -> Robot {
+    let mut shown = robot.clone();
+    let joints = shown.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    let texts = [&mut shown.name, &mut shown.licence, &mut shown.attribution];
+    let texts = texts.into_iter().chain(&mut shown.notes);
+    for text in texts.chain(joints.map(|joint| &mut joint.name)) {
+        *text = spelled_out(text);
+    }
+    shown
 }
 
 /// The walk along the line that is asked for, or why there is none and what to do.

@@ -100,6 +100,20 @@ fn a_picture_of_the_legs_is_written_and_replaces_nothing_unasked() {
 }
 
 #[test]
+fn what_a_foreign_robot_is_called_commands_no_terminal() {
+    let place = place();
+    let named = place
+        .read(G1)
+        .replace("name = \"g1_12dof\"", "name = \"g1\\u001b[2J\\u202e\"");
+    place.write(G1, named);
+    let said = place.succeeds(&["robot", G1]);
+    assert!(
+        said.starts_with("g1\\u{1b}[2J\\u{202e}: 12 joints"),
+        "{said:?}"
+    );
+}
+
+#[test]
 fn what_is_no_robot_and_what_no_robot_has_is_refused() {
     let place = place();
     for (arguments, words) in [

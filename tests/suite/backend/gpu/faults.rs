@@ -34,7 +34,6 @@ fn val_all_faults_of_a_uav_agree() {
     for kind in [
         DisturbanceKind::Gust1Cosine,
         DisturbanceKind::Dryden,
-        DisturbanceKind::Friction,
         DisturbanceKind::RotorVortex,
     ] {
         assert!(
@@ -56,6 +55,15 @@ fn val_all_faults_of_a_uav_agree() {
         };
         assert!(double.compared > 20 && single.compared > 40);
     }
+}
+
+#[test]
+fn val_friction_of_a_uav_agrees() {
+    let friction = "disturbance.+={ kind = \"friction\", coulomb = { uniform = [0.0, 2.0] }, viscous = { uniform = [0.0, 0.3] } }";
+    let Some([double, single]) = agreement(&altered("smoke", &["episodes=16", friction])) else {
+        return;
+    };
+    assert!(double.compared > 20 && single.compared > 20);
 }
 
 #[test]
