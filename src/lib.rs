@@ -39,7 +39,8 @@
 //! let gains = GainSet::of_groups(&campaign)?;
 //! let options = RunOptions::cpu(Precision::F64);
 //! let simulation = simulate(&campaign, &gains, &options, None, &|_finished| ())?;
-//! let results = Results::of(&campaign, &gains, &simulation.tables.scores, &simulation.pool);
+//! // Of how restless the commands are, nothing is known without flights.
+//! let results = Results::of(&campaign, &gains, &simulation.tables.scores, &[], &simulation.pool);
 //!
 //! for row in results.summary.iter().filter(|row| row.metric == "rmse") {
 //!     let median = row.quantiles[0];
