@@ -13,7 +13,7 @@ const SHORTER: [f64; 6] = [1.0, 0.8, 0.6, 0.4, 0.25, 0.15];
 const SLOWER: [f64; 3] = [1.0, 1.5, 2.0];
 /// How many shares of a shorter step are as bad as one of another height.
 const WEIGHT: f64 = 3.0;
-/// Digits of what is proposed, 1/m.
+/// What is proposed has three digits behind the point: millimetres and milliseconds.
 const ROUNDING: f64 = 1e3;
 
 /// Samples that are planned in the search: it takes seconds.
@@ -37,9 +37,8 @@ pub fn nearest<T>(
     }
     candidates.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let mut planned = 0.0;
-    let mut gaits = candidates.into_iter().map(|(_, gait)| gait);
+    let gaits = candidates.into_iter().map(|(_, gait)| gait);
     gaits
-        .by_ref()
         .take_while(|gait| {
             planned += length_m / gait.step_length_m * gait.step_period_s / gait.sampling_s;
             planned < MOST_SAMPLES

@@ -8,10 +8,10 @@ use crate::agent::robot::kinematics::{by_leg, leg_pose};
 use crate::agent::robot::standing;
 use crate::agent::robot::structure::{JOINTS, LEG_JOINTS, Leg};
 
-/// Sets the soles of both legs.
+/// Sets the soles of both legs; returns the standing pose, rad.
 ///
 /// # Errors
-/// If the pose or a frame is none. Returns the standing pose, rad.
+/// If the pose is outside the joints' ranges, or a frame is not of the last link.
 pub(super) fn set(
     check: &Check<'_>,
     tree: &Tree<'_>,

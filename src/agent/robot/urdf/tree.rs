@@ -271,16 +271,8 @@ impl<'a> Tree<'a> {
 
     /// Whether a link of this name is fixed to a link, over however many others.
     pub(super) fn are_rigid(&self, link: usize, name: &str) -> bool {
-        let Some(mut other) = self.index.get(name).copied() else {
-            return false;
-        };
-        while let Some(joint) = self.carrier[other].map(|joint| &self.joints[joint]) {
-            if !self.is_fixed(joint) {
-                break;
-            }
-            other = self.index[joint.parent.as_str()];
-        }
-        other == link
+        let other = self.index.get(name);
+        other.is_some_and(|other| self.carrier_link(*other) == link)
     }
 
     /// Whether a link has this name.
