@@ -90,15 +90,17 @@ impl Cpu {
         precision: Precision,
         simd: Option<Simd>,
     ) -> Self {
-        Self(match precision {
-            Precision::F64 => Loop::F64(Simulator::new(group, gains)),
-            Precision::F32 => {
-                let simd = simd
-                    .filter(|simd| simd.is_available())
-                    .unwrap_or_else(Simd::widest);
-                Loop::F32(Simulator::new(group, gains), simd)
-            }
+        Self(match Self::layout(precision, simd) {
+            None => Loop::F64(Simulator::new(group, gains)),
+            Some(simd) => Loop::F32(Simulator::new(group, gains), simd),
         })
+    }
+
+    /// The layout that episodes have where one is asked for; none in double precision.
+    #[must_use]
+    pub fn layout(precision: Precision, asked: Option<Simd>) -> Option<Simd> {
+        let available = asked.filter(|simd| simd.is_available());
+        (precision == Precision::F32).then(|| available.unwrap_or_else(Simd::widest))
     }
 
     /// The layout in use; `None` in double precision.

@@ -57,7 +57,11 @@ impl Check<'_> {
         limit: &str,
         remedy: &str,
     ) -> CampaignError {
-        let key = self.prefix.clone() + &key.into();
+        let mut key = self.prefix.clone() + &key.into();
+        // The file's own number is not the one that is wrong.
+        if key == "episodes" && self.source.episodes.is_some() {
+            key = "--episodes".to_string();
+        }
         let place = self.source.place_of(&key);
         let place = place.map_or(String::new(), |place| format!(" ({place})"));
         CampaignError::Invalid {

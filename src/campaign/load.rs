@@ -32,6 +32,21 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`]; what comes from a setting names it as its place.
     pub fn load_with(path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
+        Self::load_asked(path, overlay, None)
+    }
+
+    /// The same with a number of episodes in the place of the file's, which is not looked at then.
+    ///
+    /// # Errors
+    /// As [`Campaign::load_with`].
+    pub fn load_asked(
+        path: &Path,
+        overlay: &[Setting],
+        episodes: Option<u32>,
+    ) -> Result<Self, CampaignError> {
+        let parse = |text: &str, path: &Path| {
+            Self::parse_with_robots(text, path, overlay, &|_| None, episodes)
+        };
         let failed = |source| CampaignError::Read {
             path: path.to_path_buf(),
             source,
@@ -39,10 +54,10 @@ impl Campaign {
         if let Some(found) = of_gallery(path) {
             let (path, text) =
                 found.map_err(|reason| failed(Error::new(ErrorKind::NotFound, reason)))?;
-            return Self::parse_with(text, &path, overlay);
+            return parse(text, &path);
         }
         let text = read_text(path).map_err(failed)?;
-        let campaign = Self::parse_with(&text, path, overlay)?;
+        let campaign = parse(&text, path)?;
         campaign.require_files()?;
         Ok(campaign)
     }
@@ -75,11 +90,11 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load_with`].
     pub fn parse_with(text: &str, path: &Path, overlay: &[Setting]) -> Result<Self, CampaignError> {
-        Self::parse_with_robots(text, path, overlay, &|_| None)
+        Self::parse_with_robots(text, path, overlay, &|_| None, None)
     }
 
     /// The same with the text of the robot's file of each group, by its name, where that is at hand and the file may
-    /// not be there.
+    /// not be there; and with a number of episodes in the place of the file's.
     ///
     /// # Errors
     /// As [`Campaign::load_with`].
@@ -88,11 +103,13 @@ impl Campaign {
         path: &Path,
         overlay: &[Setting],
         robots: &dyn Fn(&str) -> Option<String>,
+        episodes: Option<u32>,
     ) -> Result<Self, CampaignError> {
         let source = Source {
             path,
             text,
             overlay,
+            episodes,
         };
         let root = ValueDeserializer::from(source.root()?);
         let file = CampaignFile::deserialize(root).map_err(|error| source.syntax(error))?;
@@ -102,10 +119,11 @@ impl Campaign {
     /// The same with another number of episodes than the file's.
     ///
     /// # Errors
-    /// If the sampling design cannot divide so many into equal replicates.
+    /// If the sampling design cannot divide so many into equal replicates, or the strata do not go round once.
     pub fn with_episodes(self, episodes: u32) -> Result<Self, CampaignError> {
-        self.check(String::new())
-            .divides("--episodes", self.sampling, episodes)?;
+        let check = self.check(String::new());
+        check.divides("--episodes", self.sampling, episodes)?;
+        check.goes_round("--episodes", &self.strata, episodes)?;
         Ok(self.with(|campaign| campaign.episodes = episodes))
     }
 
@@ -143,6 +161,7 @@ impl Common {
             path: &self.path,
             text: &self.text,
             overlay: &self.overlay,
+            episodes: None,
         };
         Check::new(source, prefix)
     }

@@ -18,6 +18,8 @@ pub(super) struct Source<'a> {
     pub(super) text: &'a str,
     /// What is laid over it, in this order.
     pub(super) overlay: &'a [Setting],
+    /// The number of episodes in the place of the file's, if there is one.
+    pub(super) episodes: Option<u32>,
 }
 
 impl<'a> Source<'a> {

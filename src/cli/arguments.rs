@@ -1,13 +1,17 @@
 //! The command line: commands, their arguments and examples.
 
 use super::compare::CompareArguments;
+use super::halt::duration;
 use super::new::NewArguments;
 use super::robot::RobotArguments;
+use super::submit::SubmitArguments;
 use clap::builder::{PossibleValuesParser, StyledStr};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use std::time::Duration;
 use urts_mc::campaign::Setting;
+use urts_mc::run::shard::AskedShard;
 use urts_mc::run::tune::STRUCTURES;
 
 /// Monte Carlo robustness of fault-tolerant controllers, pair by pair against PID baselines.
@@ -19,7 +23,8 @@ pub(crate) struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad usage or campaign file; 3 synthesis failed;\n\
-4 a [[require]] does not hold, or compare finds a regression; 1 anything else.";
+4 a [[require]] does not hold, or compare finds a regression; 5 the run was asked to\n\
+end, and the same command goes on with what is kept; 1 anything else.";
 
 /// The examples of a command's help, one a line; a test runs them all.
 fn examples(lines: &[&str]) -> String {
@@ -58,6 +63,25 @@ pub(crate) enum Command {
         "urts-mc run gallery:smoke --out reports/gallery",
     ]))]
     New(NewArguments),
+    /// Make one run of the shards that were flown into one directory, or into several
+    #[command(after_help = examples(&[
+        "urts-mc run campaigns/smoke.toml --out reports/shards --shard 1/2",
+        "urts-mc run campaigns/smoke.toml --out reports/shards --shard 2/2",
+        "urts-mc merge reports/shards",
+    ]))]
+    Merge(MergeArguments),
+    /// Show how far a run is that is flown in parts, and which shards are missing
+    #[command(after_help = examples(&[
+        "urts-mc status reports/smoke",
+        "urts-mc status reports/smoke --json",
+    ]))]
+    Status(StatusArguments),
+    /// Print what begins the shards of a run on a cluster: for Slurm or Kubernetes
+    #[command(after_help = examples(&[
+        "urts-mc submit campaigns/uav-paper.toml --episodes 1000000 --slurm 8 --time 4h",
+        "urts-mc submit campaigns/uav-paper.toml --kubernetes 8 --image registry/urts-mc:0.1 --backend gpu",
+    ]))]
+    Submit(SubmitArguments),
     /// Check a campaign, synthesize its gains, show what would be drawn; simulates nothing
     #[command(after_help = examples(&[
         "urts-mc check campaigns/uav-paper.toml",
@@ -200,6 +224,23 @@ pub(crate) struct RunArguments {
     /// and replace the file of --junit
     #[arg(long, verbatim_doc_comment)]
     pub(crate) overwrite: bool,
+    /// End soon after this time and keep what was flown, as on SIGINT,
+    /// SIGTERM and SIGUSR1; the same command goes on
+    #[arg(long, value_name = "3h50m", verbatim_doc_comment, value_parser = duration)]
+    pub(crate) max_time: Option<Duration>,
+    /// Fly only these parts, beside the processes of the other shards, into
+    /// one directory for urts-mc merge: 3/8, or auto as a task of Slurm,
+    /// PBS, Grid Engine, Kubernetes or AWS Batch; auto/8 says of how many
+    #[arg(long, value_name = "K/N", verbatim_doc_comment, conflicts_with_all = ["restart", "csv", "cross_check", "junit"])]
+    pub(crate) shard: Option<AskedShard>,
+    /// Begin anew where the output directory keeps episodes of an
+    /// unfinished run
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) restart: bool,
+    /// Go on though another engine or version flew the episodes that are
+    /// kept; the manifest says which
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) allow_mixed: bool,
     /// Write the episode and channel tables as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
@@ -287,6 +328,55 @@ pub(crate) struct CheckArguments {
     pub(crate) json: bool,
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// Where the shards were flown
+    #[arg(required = true, value_name = "DIR")]
+    pub(crate) dirs: Vec<PathBuf>,
+    /// Output directory [default: the first DIR]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write even where the output directory holds something else
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+    /// Let episodes of several engines or versions stand in one run; the
+    /// manifest says which
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) allow_mixed: bool,
+    /// Write the episode and channel tables as CSV too
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Threads; 0 takes all cores. The result is the same
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print more than fits a screen
+    #[arg(long)]
+    pub(crate) verbose: bool,
+    /// Print nothing but errors and what --json asks for
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StatusArguments {
+    /// Output directory of the run
+    pub(crate) run: PathBuf,
+    /// Print the numbers of the shards that nobody flies, as an array takes
+    /// them: 3,5-7
+    #[arg(long, verbatim_doc_comment, conflicts_with = "json")]
+    pub(crate) missing: bool,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors and what --json asks for; the exit code
+    /// says whether episodes are missing
+    #[arg(long, short, verbatim_doc_comment)]
     pub(crate) quiet: bool,
 }
 

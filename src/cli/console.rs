@@ -38,5 +38,9 @@ pub(crate) fn print_error(failure: &Failure) {
     let mut stream = AutoStream::auto(stderr()).lock();
     // There is no other place to say that nothing can be said.
     let message = spelled_out(&failure.message);
-    let _ = writeln!(stream, "{BAD}error:{BAD:#} {message}");
+    let _ = match failure.code {
+        // Nothing went wrong: somebody asked for it.
+        Code::Partial => writeln!(stream, "partial: {message}"),
+        _ => writeln!(stream, "{BAD}error:{BAD:#} {message}"),
+    };
 }

@@ -7,8 +7,20 @@ use urts_mc::backend::gpu::Tuning;
 use urts_mc::simulation::{Backend, RunOptions};
 
 impl EngineArguments {
-    /// The options; options that contradict each other are refused.
+    /// The options; options that contradict each other, or that this processor lacks, are refused.
     pub(super) fn options(&self) -> Result<RunOptions, Failure> {
+        let options = self.options_anywhere()?;
+        if let Some(simd) = options.simd.filter(|simd| !simd.is_available()) {
+            let name = format!("{simd:?}").to_lowercase();
+            return Err(Failure::usage(format!(
+                "--simd {name}: this processor lacks it; use auto"
+            )));
+        }
+        Ok(options)
+    }
+
+    /// The same, for any machine.
+    pub(super) fn options_anywhere(&self) -> Result<RunOptions, Failure> {
         let precision = match self.precision {
             PrecisionChoice::F32 => Precision::F32,
             PrecisionChoice::F64 => Precision::F64,
@@ -19,12 +31,6 @@ impl EngineArguments {
             SimdChoice::Avx2 => Some(Simd::Avx2),
             SimdChoice::Avx512 => Some(Simd::Avx512),
         };
-        if let Some(simd) = simd.filter(|simd| !simd.is_available()) {
-            let name = format!("{simd:?}").to_lowercase();
-            return Err(Failure::usage(format!(
-                "--simd {name}: this processor lacks it; use auto"
-            )));
-        }
         if self
             .adapter
             .as_ref()
@@ -69,5 +75,13 @@ impl EngineArguments {
             threads: usize::from(self.threads),
             tuning: Tuning::default(),
         })
+    }
+}
+
+/// The options of work on so many threads of the CPU, all cores if it is none.
+pub(super) fn of_threads(threads: u16) -> RunOptions {
+    RunOptions {
+        threads: usize::from(threads),
+        ..RunOptions::cpu(Precision::F32)
     }
 }

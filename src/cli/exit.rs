@@ -8,11 +8,12 @@ use urts_mc::campaign::CampaignError;
 use urts_mc::controllers::GainsError;
 use urts_mc::report::ReportError;
 use urts_mc::report::paper::PaperError;
-use urts_mc::run::RunError;
 use urts_mc::run::compare::CompareError;
 use urts_mc::run::error::OutputError;
 use urts_mc::run::replay::ReplayError;
+use urts_mc::run::status::StatusError;
 use urts_mc::run::tune::TuneError;
+use urts_mc::run::{MergeError, RunError};
 use urts_mc::simulation::SimulationError;
 use urts_mc::synthesis::SynthesisError;
 
@@ -24,6 +25,7 @@ pub(crate) enum Code {
     Usage = 2,
     Synthesis = 3,
     Unmet = 4,
+    Partial = 5,
 }
 
 impl From<Code> for process::ExitCode {
@@ -98,7 +100,8 @@ impl Ends for RunError {
             Self::Campaign(error) => error.code(),
             Self::Output(error) => error.code(),
             Self::Simulation(error) => error.code(),
-            Self::Interrupted { .. } | Self::Manifest(_) => Code::Other,
+            Self::Partial { .. } => Code::Partial,
+            Self::Interrupted { .. } | Self::Stuck { .. } | Self::Manifest(_) => Code::Other,
         }
     }
 
@@ -106,6 +109,36 @@ impl Ends for RunError {
         match self {
             Self::Output(error) => Some(error),
             _ => None,
+        }
+    }
+}
+
+impl Ends for MergeError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Output(error) => error.code(),
+            Self::Campaign(error) => error.code(),
+            Self::Run(error) => error.code(),
+            Self::Simulation(error) => error.code(),
+            Self::Nothing { .. } | Self::Differ { .. } | Self::Mixed { .. } => Code::Usage,
+            Self::Gaps { .. } => Code::Partial,
+        }
+    }
+
+    fn output(&self) -> Option<&OutputError> {
+        match self {
+            Self::Output(error) => Some(error),
+            Self::Run(error) => error.output(),
+            _ => None,
+        }
+    }
+}
+
+impl Ends for StatusError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Output(error) => error.code(),
+            Self::Campaign(error) => error.code(),
         }
     }
 }

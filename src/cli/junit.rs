@@ -5,9 +5,10 @@ use std::fs;
 use std::path::Path;
 use urts_mc::report::junit::{junit, junit_of_comparison, junit_of_error};
 use urts_mc::run::compare::RunComparison;
-use urts_mc::run::directory::{OutputFile, is_of_run};
+use urts_mc::run::directory::is_of_run;
 use urts_mc::run::error::OutputError;
 use urts_mc::run::manifest::Manifest;
+use urts_mc::run::output_file::OutputFile;
 
 /// The file of `--junit`.
 pub(super) struct JunitFile(OutputFile);

@@ -6,10 +6,13 @@ mod completions;
 mod console;
 mod engine;
 pub(crate) mod exit;
+mod halt;
 mod junit;
 mod new;
 mod progress;
 mod robot;
+mod shards;
+mod submit;
 
 pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
@@ -21,8 +24,10 @@ use arguments::{
 use completions::completions;
 use console::{print, print_json, print_note};
 use exit::{Code, Failure};
+use halt::Halt;
 use junit::{JunitFile, reported};
 use progress::ProgressLine;
+use shards::{merge_command, run_shard, status_command};
 use std::collections::BTreeMap;
 use std::path::Path;
 use urts_mc::backend::cpu::{Precision, Simd};
@@ -37,11 +42,12 @@ use urts_mc::report::terminal::Detail;
 use urts_mc::report::{Length, columns, columns_chapter, report, terminal, trace, tuning};
 use urts_mc::results::can_be_judged;
 use urts_mc::results::dictionary::DICTIONARY;
-use urts_mc::run::directory::{OutputDir, OutputFile};
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::output_file::OutputFile;
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
 use urts_mc::run::tune::{self, Structure};
-use urts_mc::run::{Extras, Findings, Labels, run};
+use urts_mc::run::{Extras, Findings, Labels, Progress, run};
 use urts_mc::synthesis::{Preset, synthesize};
 
 /// Carries out a command.
@@ -69,6 +75,9 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
     match command {
         Command::Run(arguments) => run_command(&arguments),
         Command::New(arguments) => new::new_command(&arguments),
+        Command::Merge(arguments) => merge_command(&arguments),
+        Command::Status(arguments) => status_command(&arguments),
+        Command::Submit(arguments) => submit::submit_command(&arguments),
         Command::Check(arguments) => check_command(&arguments),
         Command::Tune(arguments) => tune_command(&arguments),
         Command::Robot(arguments) => robot::robot_command(&arguments),
@@ -113,10 +122,9 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
 
 impl Overrides {
     fn load(&self) -> Result<Campaign, Failure> {
-        let campaign = Campaign::load_with(&self.campaign, &self.set)?;
+        let campaign = Campaign::load_asked(&self.campaign, &self.set, self.episodes)?;
         let seed = self.seed.unwrap_or(campaign.seed);
-        let episodes = self.episodes.unwrap_or(campaign.episodes);
-        Ok(campaign.with_seed(seed).with_episodes(episodes)?)
+        Ok(campaign.with_seed(seed))
     }
 }
 
@@ -133,6 +141,9 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
     };
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| Path::new("reports").join(&campaign.name));
+    if let Some(shard) = arguments.shard {
+        return run_shard(arguments, &campaign, &out, shard);
+    }
     let report = arguments.junit(Some(&out))?;
     let findings = match arguments.simulate(&campaign, &out) {
         Ok(findings) => findings,
@@ -173,16 +184,30 @@ impl RunArguments {
                 "--cross-check: compares with f64, which this run is; leave it out".into(),
             ));
         }
+        let halt = Halt::after(self.max_time)?;
         let out = OutputDir::claim(out, campaign, self.overwrite)?;
         let extras = Extras {
             csv: self.csv,
             cross_check: self.cross_check,
+            restart: self.restart,
+            overwrite: self.overwrite,
+            allow_mixed: self.allow_mixed,
+            halt: &|| halt.is_asked(),
         };
         if !self.quiet {
             cautions(campaign).iter().for_each(|said| print_note(said));
         }
         let shown = ProgressLine::of_run(campaign, self.quiet);
         let findings = run(campaign, &options, &out, extras, &|at| {
+            if let (Progress::Kept(kept), false) = (at, self.quiet)
+                && kept > 0
+            {
+                let asked = campaign.episodes;
+                print_note(&format!(
+                    "goes on after {kept} of {asked} episodes that are kept in {}",
+                    out.path().display()
+                ));
+            }
             shown.tell(at);
         })?;
         report(out.path(), Length::Brief)?;

@@ -65,7 +65,12 @@ impl ProgressLine {
                 self.bar.reset();
                 self.bar.set_style(of_flight(self.may_stop));
             }
+            Progress::Kept(episodes) => {
+                self.bar.set_position(u64::from(episodes));
+                self.bar.reset_eta();
+            }
             Progress::Simulated(episodes) => self.bar.inc(u64::from(episodes)),
+            Progress::Tables => self.work("tables of what was flown"),
             Progress::CrossCheck => self.work("comparing with f64 on the CPU"),
             Progress::Statistics => self.work("intervals, tests and rankings"),
             Progress::Writing => self.work("writing tables"),

@@ -10,7 +10,7 @@ use urts_mc::campaign::{Campaign, CampaignError, Setting};
 use urts_mc::reference::Reference;
 use urts_mc::reference::walk::Walk;
 use urts_mc::report::{robot_picture, terminal};
-use urts_mc::run::directory::OutputFile;
+use urts_mc::run::output_file::OutputFile;
 use urts_mc::util::hidden::spelled_out;
 
 #[derive(Debug, Args)]

@@ -113,6 +113,25 @@ macro_rules! metrics {
             pub last_outside_before_fault: Option<u32>,
         }
 
+        impl ChannelOutcome {
+            /// The metrics in order, to be kept outside of memory.
+            pub(crate) fn numbers(&self) -> [f64; METRICS] {
+                [$(self.$error,)* $(self.$other,)*]
+            }
+
+            /// The outcome of the same numbers.
+            pub(crate) fn of_numbers(
+                numbers: [f64; METRICS],
+                [last_outside, last_outside_before_fault]: [Option<u32>; 2],
+            ) -> Self {
+                let [$($error,)* $($other,)*] = numbers;
+                Self { $($error,)* $($other,)* last_outside, last_outside_before_fault }
+            }
+        }
+
+        /// Metrics of a channel.
+        pub(crate) const METRICS: usize = ERROR_METRICS.len() + OTHER_METRICS.len();
+
         /// The metrics of the tracking error.
         pub const ERROR_METRICS: &[Metric] = &[
             $(Metric { name: stringify!($error), of: |outcome| outcome.$error }),*

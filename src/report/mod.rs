@@ -15,6 +15,7 @@ pub mod requirements;
 mod robot_picture;
 mod run_data;
 pub(crate) mod section;
+pub mod submission;
 pub mod terminal;
 mod tuning;
 

@@ -18,6 +18,8 @@ const PERMUTATIONS: u32 = 4_000;
 /// two ways, is a third of the 5 % after Holm's correction for the family. Fewer, and no effect however strong could be
 /// called sure.
 const PER_CONDITION: usize = 120;
+/// Episodes up to which all of them are permuted: more would take hours, and change nothing.
+const SHUFFLED: usize = 1 << 14;
 /// Worst episodes that are listed of each controller.
 const WORST: usize = 10;
 
@@ -119,6 +121,7 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
             }
             false => 0,
         },
+        shuffled: SHUFFLED,
     };
     let of_target = |(target, outcome): (Target, Outcome)| {
         let effects = effects(&columns, &outcome, LEVEL, permutations);

@@ -4,7 +4,7 @@ use super::error::{MANIFEST, OutputError};
 use super::file_names::{ON_THE_WAY, is_ours};
 use super::integrity::inputs;
 use super::labels::Labels;
-use super::lock::{Lock, NotHeld};
+use super::lock::{LOCK, Lock, NotHeld, Sharing};
 use super::manifest::{Manifest, campaign_hash};
 use super::replacement::recover;
 use crate::campaign::Campaign;
@@ -40,9 +40,30 @@ impl OutputDir {
     /// If the directory holds something else, is held by another process, or cannot be written. Nothing is left behind
     /// then.
     pub fn claim(path: &Path, campaign: &Campaign, overwrite: bool) -> Result<Self, OutputError> {
-        let held = Self::hold(path)?;
+        Self::claim_with(path, campaign, overwrite, Sharing::Alone)
+    }
+
+    /// The same, which other shards of the run may hold at the same time.
+    ///
+    /// # Errors
+    /// As [`OutputDir::claim`].
+    pub fn claim_shared(
+        path: &Path,
+        campaign: &Campaign,
+        overwrite: bool,
+    ) -> Result<Self, OutputError> {
+        Self::claim_with(path, campaign, overwrite, Sharing::Shared)
+    }
+
+    fn claim_with(
+        path: &Path,
+        campaign: &Campaign,
+        overwrite: bool,
+        sharing: Sharing,
+    ) -> Result<Self, OutputError> {
+        let held = Self::hold(path, sharing)?;
         // Where there are no locks, what is there may be somebody's who is still writing it.
-        if held.lock.as_ref().is_some_and(|lock| lock.excludes()) {
+        if sharing == Sharing::Alone && held.lock.as_ref().is_some_and(|lock| lock.excludes()) {
             recover(path)?;
         }
         let other = match Manifest::read(path) {
@@ -78,11 +99,11 @@ impl OutputDir {
         is_own: &dyn Fn(&str) -> bool,
         other: Option<String>,
     ) -> Result<Self, OutputError> {
-        Self::hold(path)?.judged(overwrite, is_own, other)
+        Self::hold(path, Sharing::Alone)?.judged(overwrite, is_own, other)
     }
 
-    /// Keeps all others from writing into a directory.
-    fn hold(path: &Path) -> Result<Self, OutputError> {
+    /// Keeps all others from writing into a directory, or all but those that share it.
+    fn hold(path: &Path, sharing: Sharing) -> Result<Self, OutputError> {
         let unwritable = |source| OutputError::Unwritable {
             path: path.to_path_buf(),
             source,
@@ -90,7 +111,7 @@ impl OutputDir {
         if path.exists() && !path.is_dir() {
             return Err(unwritable(ErrorKind::NotADirectory.into()));
         }
-        match Lock::take(path) {
+        match Lock::take(path, LOCK, sharing) {
             Ok(lock) => Ok(Self {
                 path: path.to_path_buf(),
                 shown: path.to_path_buf(),
@@ -246,7 +267,7 @@ impl OutputDir {
 }
 
 /// A file whose name nobody can guess, readable as others that the user makes.
-fn part_in(dir: &Path) -> std::io::Result<NamedTempFile> {
+pub(super) fn part_in(dir: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(ON_THE_WAY).suffix(".part");
     #[cfg(unix)]
@@ -260,91 +281,6 @@ fn other_files(run: &Manifest, campaign: &Campaign) -> Option<String> {
     let differs = |(path, hash): &(&String, &String)| now.get(*path) != Some(*hash);
     let (path, _) = run.inputs.iter().find(differs)?;
     Some(format!("a run of this campaign with another {path}"))
-}
-
-/// Makes a directory and a file in it, and takes both away again.
-fn try_to_write(dir: &Path) -> std::io::Result<()> {
-    let absent: Vec<&Path> = dir
-        .ancestors()
-        .take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists())
-        .collect();
-    let tried = fs::create_dir_all(dir)
-        .and_then(|()| part_in(dir))
-        .and_then(NamedTempFile::close);
-    // The directories are made again when the first file is written; a run that fails before leaves none behind.
-    for dir in absent {
-        // One that could not be made cannot be removed either.
-        let _ = fs::remove_dir(dir);
-    }
-    tried
-}
-
-/// A single file that may be written.
-#[derive(Debug, Clone)]
-pub struct OutputFile {
-    dir: OutputDir,
-    name: String,
-}
-
-impl OutputFile {
-    /// Finds out whether a file can be written before any work is done; replaces nothing yet.
-    ///
-    /// # Errors
-    /// If it is a directory or another thing that is no file, or its directory cannot be written. Nothing is left
-    /// behind then.
-    pub fn claim(path: &Path) -> Result<Self, OutputError> {
-        let unwritable = |source| OutputError::Unwritable {
-            path: path.to_path_buf(),
-            source,
-        };
-        if path.exists() && !path.is_file() {
-            return Err(unwritable(std::io::Error::other("it is no file")));
-        }
-        let name = path
-            .file_name()
-            .ok_or_else(|| unwritable(ErrorKind::InvalidFilename.into()))?
-            .to_string_lossy()
-            .into_owned();
-        let dir = path
-            .parent()
-            .filter(|dir| !dir.as_os_str().is_empty())
-            .unwrap_or(Path::new("."));
-        try_to_write(dir).map_err(unwritable)?;
-        Ok(Self {
-            dir: OutputDir::existing(dir),
-            name,
-        })
-    }
-
-    /// Whether the directory that is to hold it exists.
-    #[must_use]
-    pub fn has_place(&self) -> bool {
-        self.dir.path().is_dir()
-    }
-
-    /// Takes away an earlier file of this name, if there is one.
-    ///
-    /// # Errors
-    /// If it cannot be removed.
-    pub fn remove(&self) -> Result<(), OutputError> {
-        self.dir.remove(&self.name)
-    }
-
-    /// Writes the file under its name only when it is complete.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn write(&self, content: &[u8]) -> Result<(), OutputError> {
-        self.dir.write(&self.name, content)
-    }
-
-    /// As [`OutputFile::write`], a table as Parquet.
-    ///
-    /// # Errors
-    /// If the table cannot be encoded or written.
-    pub fn write_parquet(&self, table: &Table, labels: &Labels) -> Result<(), OutputError> {
-        self.dir.write_parquet(&self.name, table, labels)
-    }
 }
 
 /// A file that is being written, and what its disk said first when it took no more.

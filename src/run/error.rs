@@ -59,6 +59,24 @@ pub enum OutputError {
         /// In what it differs.
         reason: String,
     },
+    /// The directory keeps episodes of an unfinished run that cannot be gone on with.
+    #[error("{}: keeps the episodes of an unfinished run: {what}; {remedy}", path.display())]
+    Unfinished {
+        /// The directory.
+        path: PathBuf,
+        /// Of which run.
+        what: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A part of an unfinished run is not what was written.
+    #[error("{}: {reason}; run the campaign again, which simulates its episodes anew and keeps all others", path.display())]
+    DamagedPart {
+        /// Its file.
+        path: PathBuf,
+        /// In what it differs.
+        reason: String,
+    },
     /// A table cannot be encoded.
     #[error("{}: the table cannot be encoded", path.display())]
     Table {
@@ -70,15 +88,20 @@ pub enum OutputError {
 }
 
 impl OutputError {
+    /// Whether a disk takes no more.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        let full = [FileTooLarge, QuotaExceeded, StorageFull];
+        matches!(self, Self::Unwritable { source, .. } if full.contains(&source.kind()))
+    }
+
     /// Whether who asked could have known: a disk that fills up while a run is written is no bad usage.
     #[must_use]
     pub fn is_usage(&self) -> bool {
-        use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
         match self {
-            Self::Table { .. } => false,
-            Self::Unwritable { source, .. } => {
-                ![FileTooLarge, QuotaExceeded, StorageFull].contains(&source.kind())
-            }
+            Self::Table { .. } | Self::DamagedPart { .. } => false,
+            Self::Unwritable { .. } => !self.is_full(),
             _ => true,
         }
     }

@@ -4,19 +4,35 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process;
+use std::thread;
+use std::time::Duration;
 
 /// The file that says who holds a directory. The system frees its lock when the holder ends, however that ends, so one
 /// that is left behind is taken over.
 pub(super) const LOCK: &str = ".urts-mc-lock";
 
+/// How often a lock is tried that somebody holds, and how long after each.
+const TRIES: u32 = 5;
+const MOMENT: Duration = Duration::from_millis(20);
+
 /// Bytes that a lock says at most.
 const LONGEST: usize = 400;
 
-/// A directory that nobody else writes while this is there.
+/// Who else may hold a directory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sharing {
+    /// Nobody.
+    Alone,
+    /// Others that share it, too.
+    Shared,
+}
+
+/// A directory that nobody else writes while this is there, but those that share it.
 #[derive(Debug)]
 pub(super) struct Lock {
     file: File,
     path: PathBuf,
+    sharing: Sharing,
     /// Directories that were made for it, the innermost first.
     made: Vec<PathBuf>,
     /// Whether the file system keeps locks.
@@ -32,23 +48,33 @@ pub(super) enum NotHeld {
 }
 
 impl Lock {
-    /// Takes a directory, which is made if it is not there.
-    pub(super) fn take(dir: &Path) -> Result<Self, NotHeld> {
+    /// Takes a directory by a lock of this name, which both are made if they are not there.
+    pub(super) fn take(dir: &Path, name: &str, sharing: Sharing) -> Result<Self, NotHeld> {
         let absent = dir.ancestors();
         let absent = absent.take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists());
         let made: Vec<PathBuf> = absent.map(Path::to_path_buf).collect();
         let created = fs::create_dir_all(dir).inspect_err(|_| undo(&made));
         created.map_err(NotHeld::Failed)?;
-        let path = dir.join(LOCK);
+        let path = dir.join(name);
+        let mut tries = 0;
         let taken = loop {
             let file = match open(&path) {
                 Ok(file) => file,
                 Err(error) => break Err(NotHeld::Failed(error)),
             };
-            match file.try_lock() {
+            let tried = match sharing {
+                Sharing::Alone => file.try_lock(),
+                Sharing::Shared => file.try_lock_shared(),
+            };
+            match tried {
                 // Whoever held it may have taken its file away after it was opened here.
                 Ok(()) if is_at(&file, &path) => break Ok((file, true)),
                 Ok(()) => {}
+                // Whoever looks who holds it, holds it for a moment.
+                Err(TryLockError::WouldBlock) if tries < TRIES => {
+                    tries += 1;
+                    thread::sleep(MOMENT);
+                }
                 Err(TryLockError::WouldBlock) => break Err(NotHeld::Taken(holder(file))),
                 // A file system without locks has none to keep.
                 Err(TryLockError::Error(_)) => break Ok((file, false)),
@@ -63,9 +89,19 @@ impl Lock {
         Ok(Self {
             file,
             path,
+            sharing,
             made,
             excludes,
         })
+    }
+
+    /// Who holds a directory by a lock of this name; nobody where the system keeps no locks.
+    pub(super) fn holder_of(dir: &Path, name: &str) -> Option<String> {
+        let file = File::open(dir.join(name)).ok()?;
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) => Some(holder(file)),
+            _ => None,
+        }
     }
 
     /// Whether nobody else can hold the directory; where a file system keeps no locks, somebody may.
@@ -97,8 +133,11 @@ fn open(path: &Path) -> std::io::Result<File> {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // What cannot be taken away is taken over by the next run.
-        let _ = fs::remove_file(&self.path);
+        // What cannot be taken away is taken over by the next run. What others hold too is left to the last of them.
+        let is_last = self.sharing == Sharing::Alone || self.file.try_lock().is_ok();
+        if is_last {
+            let _ = fs::remove_file(&self.path);
+        }
         let _ = self.file.unlock();
         undo(&self.made);
     }

@@ -144,10 +144,9 @@ impl Manifest {
                 "" => self.robot.clone(),
                 name => self.robots.get(name).cloned(),
             },
+            // What a design draws belongs to the number of episodes that was asked for.
+            Some(self.episodes_asked),
         )?;
-        // What a design draws belongs to the number of episodes that was asked for.
-        campaign
-            .with_seed(self.seed)
-            .with_episodes(self.episodes_asked)
+        Ok(campaign.with_seed(self.seed))
     }
 }

@@ -12,6 +12,7 @@ use crate::results::table::Table;
 use crate::simulation::Engine;
 use crate::simulation::attenuation::{AttenuationAnalysis, Attenuations};
 use crate::simulation::group_simulators::{GroupSimulators, GroupTrace};
+use crate::util::shell::quoted;
 use crate::util::suggest::did_you_mean;
 use std::path::Path;
 use thiserror::Error;
@@ -190,15 +191,6 @@ pub fn command(dir: &Path, episode: u32, controller: &str) -> String {
         quoted(&dir),
         quoted(controller)
     )
-}
-
-/// A word of a POSIX shell: in single quotes if the shell would make something else of it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_string();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// How each agent ended, and what it showed.

@@ -1,6 +1,6 @@
 //! The files of a replayed episode.
 
-use super::directory::OutputFile;
+use super::output_file::OutputFile;
 use super::replay::ReplayError;
 use std::path::{Path, PathBuf};
 

@@ -28,6 +28,7 @@
 //!
 #![doc = include_str!("README.md")]
 
+mod arrangement;
 mod binomial;
 mod correlation;
 mod difference;
@@ -37,6 +38,7 @@ mod interval;
 mod median;
 mod normal;
 mod paired;
+mod permutation;
 mod proportion;
 mod quantile;
 mod rank;
@@ -49,12 +51,13 @@ mod student;
 
 pub use correlation::{somers_d, spearman};
 pub use difference::independent_difference;
-pub use effect::{Effect, Outcome, Permutations, effects};
+pub use effect::{Effect, Outcome, effects};
 pub use holm::holm;
 pub use interval::{Estimate, Interval, LEVEL, SIGNIFICANCE};
 pub use median::median_bca;
 pub(crate) use normal::normal_quantile;
 pub use paired::{PairedFailures, alike_needed, mcnemar_mid_p, paired_difference, win_rate};
+pub use permutation::Permutations;
 pub use proportion::{clopper_pearson, clopper_pearson_upper, wilson};
 pub use quantile::{quantile, quantile_interval, quantile_lower, quantile_upper};
 pub use rank::Ranked;

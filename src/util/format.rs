@@ -1,5 +1,42 @@
 //! Numbers as reports and the terminal write them.
 
+/// A size, in the unit that people read it in.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "three digits of it are shown")]
+pub fn bytes(count: u64) -> String {
+    let units = ["kB", "MB", "GB", "TB"];
+    let (mut size, mut unit) = (count as f64 / 1e3, 0);
+    while size >= 999.5 && unit + 1 < units.len() {
+        size /= 1e3;
+        unit += 1;
+    }
+    format!("{} {}", digits(size, 3), units[unit])
+}
+
+/// A share in percent.
+#[must_use]
+pub fn share(value: f64) -> String {
+    format!("{} %", percent(value))
+}
+
+/// A length of time in its two largest units.
+#[must_use]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is longer than can be counted is the longest"
+)]
+pub fn time(seconds: f64) -> String {
+    let whole = seconds.max(0.0).ceil() as u64;
+    let [days, hours, minutes] = [86_400, 3_600, 60].map(|unit| whole / unit);
+    match (days, hours, minutes) {
+        (0, 0, 0) => format!("{whole} s"),
+        (0, 0, minutes) => format!("{minutes} min {} s", whole % 60),
+        (0, hours, minutes) => format!("{hours} h {} min", minutes % 60),
+        (days, hours, _) => format!("{days} d {} h", hours % 24),
+    }
+}
+
 /// A share in percent with its interval.
 #[must_use]
 pub fn rate(value: f64, interval: Option<[f64; 2]>) -> String {

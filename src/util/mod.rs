@@ -1,8 +1,10 @@
 //! Small helpers without knowledge of the domain: a list of fixed length, spelling suggestions, number formats, hidden
-//! characters.
+//! characters, words of a shell, JSON for people.
 
 pub mod fixed_list;
 pub mod format;
 pub mod hidden;
+pub mod json;
+pub mod shell;
 pub(crate) mod suggest;
 pub(crate) mod text_file;

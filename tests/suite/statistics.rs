@@ -12,6 +12,7 @@ mod coverage;
 mod difference;
 mod effect;
 mod effect_level;
+mod large_sample;
 mod level;
 mod median;
 mod planning;

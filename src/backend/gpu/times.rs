@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::iter::Sum;
+use std::ops::Sub;
 
 /// Wall-clock times of a simulation on a GPU, s.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -25,5 +26,18 @@ impl Sum for GpuTimes {
             kernel_s: sum.kernel_s + own.kernel_s,
             read_back_s: sum.read_back_s + own.read_back_s,
         })
+    }
+}
+
+impl Sub for GpuTimes {
+    type Output = Self;
+
+    fn sub(self, earlier: Self) -> Self {
+        Self {
+            compile_s: self.compile_s - earlier.compile_s,
+            upload_s: self.upload_s - earlier.upload_s,
+            kernel_s: self.kernel_s - earlier.kernel_s,
+            read_back_s: self.read_back_s - earlier.read_back_s,
+        }
     }
 }

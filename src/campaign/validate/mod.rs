@@ -41,6 +41,7 @@ pub(super) fn validate(
     robots: RobotTexts<'_>,
 ) -> Result<Campaign, CampaignError> {
     let check = Check::new(source, String::new());
+    file.episodes = source.episodes.unwrap_or(file.episodes);
     check.name("name", &file.name)?;
     check.episodes(file.episodes)?;
     let time = check.time(&file.time)?;

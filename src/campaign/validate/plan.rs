@@ -113,19 +113,27 @@ impl Check<'_> {
             }
         }
         let strata = Strata::new(list);
-        if strata.turn() > episodes as usize {
-            return Err(self.invalid(
-                "episodes",
-                episodes,
-                &format!(
-                    "the shares of the {} strata take {} episodes to go round once",
-                    strata.all().len(),
-                    strata.turn()
-                ),
-                "simulate more, or give smaller shares",
-            ));
-        }
+        self.goes_round("episodes", &strata, episodes)?;
         Ok(strata)
+    }
+
+    /// Refuses a number of episodes with which some stratum has not had its share.
+    pub(crate) fn goes_round(
+        &self,
+        key: &str,
+        strata: &Strata,
+        episodes: u32,
+    ) -> Result<(), CampaignError> {
+        if strata.turn() <= episodes as usize {
+            return Ok(());
+        }
+        let limit = format!(
+            "the shares of the {} strata take {} episodes to go round once",
+            strata.all().len(),
+            strata.turn()
+        );
+        let remedy = "simulate more, or give smaller shares";
+        Err(self.invalid(key, episodes, &limit, remedy))
     }
 
     /// The name and the faults of each stratum that a table stands for. Of the campaign's faults, the second says

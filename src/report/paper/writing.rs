@@ -7,9 +7,10 @@ use super::scenarios::Scenarios;
 use crate::campaign::Campaign;
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::markdown::{Length, markdown};
-use crate::run::directory::{OutputDir, OutputFile};
+use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
 use crate::run::file_names::ON_THE_WAY;
+use crate::run::output_file::OutputFile;
 use std::fs;
 use std::path::Path;
 

@@ -16,6 +16,7 @@ mod replay;
 mod robot;
 mod runs;
 mod screening;
+mod status;
 mod tuning;
 mod written;
 
@@ -30,5 +31,6 @@ pub use plan::{plan, plan_json};
 pub use replay::{replay, replay_json};
 pub use robot::{robot, robot_json};
 pub use runs::{runs, runs_json};
+pub use status::status;
 pub use tuning::tuning;
 pub use written::{paper, report};

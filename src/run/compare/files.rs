@@ -5,7 +5,7 @@ use crate::results::{comparison_table, fairness_table};
 use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
 use crate::run::labels::Labels;
-use crate::run::pretty;
+use crate::util::json::pretty;
 use std::path::{Path, PathBuf};
 
 /// The findings, which are written last.

@@ -10,7 +10,7 @@ use crate::run::directory::OutputDir;
 use crate::run::error::OutputError;
 use crate::run::labels::Labels;
 use crate::run::manifest::{GIT_REVISION, campaign_hash};
-use crate::run::pretty;
+use crate::util::json::pretty;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

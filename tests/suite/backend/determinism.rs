@@ -133,6 +133,7 @@ fn files(
         Extras {
             csv: true,
             cross_check: None,
+            ..Extras::default()
         },
         &|_| (),
     )

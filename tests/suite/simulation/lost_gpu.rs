@@ -116,6 +116,7 @@ fn a_gpu_that_is_lost_ends_the_run_that_asked_for_it_and_the_finished_batches_ar
         Extras {
             csv: true,
             cross_check: None,
+            ..Extras::default()
         },
         &|at| {
             if let Progress::Simulated(episodes) = at
@@ -153,6 +154,7 @@ fn a_run_that_ends_early_does_not_replace_a_longer_one() {
         let extras = Extras {
             csv: false,
             cross_check: Some(0),
+            ..Extras::default()
         };
         told.store(0, Ordering::Relaxed);
         run_on(&campaign, &options, gpu, Vec::new(), &out, extras, &|at| {
@@ -298,6 +300,7 @@ fn a_run_tells_its_phases_in_order_and_every_episode_once() {
     assert_eq!(
         after,
         [
+            &Progress::Tables,
             &Progress::CrossCheck,
             &Progress::Statistics,
             &Progress::Writing

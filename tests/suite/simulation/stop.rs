@@ -196,6 +196,7 @@ fn a_stopped_run_is_whole_says_why_it_ended_and_has_the_bounds_that_hold() {
     let extras = Extras {
         csv: false,
         cross_check: Some(2),
+        ..Extras::default()
     };
     let findings = run(&campaign, &options, &out, extras, &|_| ()).unwrap();
     let manifest = Manifest::read(out.path()).unwrap();

@@ -12,6 +12,7 @@ use super::{for_each_case, number, numbers};
 const PERMUTATIONS: Permutations = Permutations {
     seed: 2026,
     most: 999,
+    shuffled: usize::MAX,
 };
 const SMALLEST_P: f64 = 1.0 / 1000.0;
 const NOTHING_KNOWN: Interval = Interval {
@@ -216,7 +217,11 @@ fn val_permutation_p_values_average_to_the_enumeration_of_all_permutations() {
     let (seeds, most) = (2000, 40);
     let (mut sums, mut squares) = ([0.0, 0.0], [0.0, 0.0]);
     for seed in 0..seeds {
-        let permutations = Permutations { seed, most };
+        let permutations = Permutations {
+            seed,
+            most,
+            shuffled: usize::MAX,
+        };
         let effect = effects(&[ranked(&x)], &metric(&y), 0.95, permutations)[0].unwrap();
         for (i, p) in [effect.trend_p, effect.shape_p].into_iter().enumerate() {
             let extreme = p * f64::from(most + 1) - 1.0;

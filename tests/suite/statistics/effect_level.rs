@@ -181,6 +181,7 @@ fn idle_family(random: &mut SplitMix64, parameters: usize, n: usize, failing: bo
     let permutations = Permutations {
         seed: random.index(1 << 40) as u64,
         most: 399,
+        shuffled: usize::MAX,
     };
     let effects = effects(&columns, &outcome, 0.95, permutations);
     effects.into_iter().flatten().collect()
@@ -255,6 +256,7 @@ fn a_threshold_on_a_few_parameters_is_found_among_many_idle_ones() {
     let permutations = Permutations {
         seed: 1,
         most: 3999,
+        shuffled: usize::MAX,
     };
     let effects = effects(&ranked, &outcome, 0.95, permutations);
     let p_values: Vec<f64> = effects.iter().flatten().map(Effect::p_value).collect();
