@@ -2,11 +2,13 @@
 
 use super::compare::CompareArguments;
 use super::halt::duration;
+use super::merge::{MergeArguments, StatusArguments};
 use super::new::NewArguments;
+use super::options::{EngineArguments, Overrides};
 use super::robot::RobotArguments;
 use super::submit::SubmitArguments;
 use clap::builder::{PossibleValuesParser, StyledStr};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -187,22 +189,6 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Overrides {
-    /// The campaign file
-    pub(crate) campaign: PathBuf,
-    /// Simulate this many episodes instead of the campaign's
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) episodes: Option<u32>,
-    /// Use this seed instead of the campaign's
-    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
-    pub(crate) seed: Option<u64>,
-    /// Set a key of the campaign, as its error messages name it, to a TOML
-    /// value; without a value, remove it. Repeatable
-    #[arg(long, value_name = "KEY=VALUE", verbatim_doc_comment)]
-    pub(crate) set: Vec<Setting>,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
@@ -261,41 +247,6 @@ pub(crate) struct RunArguments {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct EngineArguments {
-    /// Where to simulate: auto takes a hardware GPU if there is one,
-    /// and the CPU otherwise
-    #[arg(long, value_enum, default_value = "auto", verbatim_doc_comment)]
-    pub(crate) backend: BackendChoice,
-    /// Use the GPU whose name contains this, or that of this number in
-    /// urts-mc devices; the only way to a software one
-    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
-    pub(crate) adapter: Option<String>,
-    /// Number format of the episode loop; f64 is the reference,
-    /// on the CPU
-    #[arg(
-        long,
-        value_enum,
-        default_value = "f32",
-        value_name = "FORMAT",
-        verbatim_doc_comment
-    )]
-    pub(crate) precision: PrecisionChoice,
-    /// Layout of the CPU's episodes in f32; avx2 and avx512 give the same
-    /// result
-    #[arg(
-        long,
-        value_enum,
-        default_value = "auto",
-        value_name = "LANES",
-        verbatim_doc_comment
-    )]
-    pub(crate) simd: SimdChoice,
-    /// Threads; 0 takes all cores. The result is the same
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct TuneArguments {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
@@ -328,55 +279,6 @@ pub(crate) struct CheckArguments {
     pub(crate) json: bool,
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct MergeArguments {
-    /// Where the shards were flown
-    #[arg(required = true, value_name = "DIR")]
-    pub(crate) dirs: Vec<PathBuf>,
-    /// Output directory [default: the first DIR]
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
-    /// Write even where the output directory holds something else
-    #[arg(long)]
-    pub(crate) overwrite: bool,
-    /// Let episodes of several engines or versions stand in one run; the
-    /// manifest says which
-    #[arg(long, verbatim_doc_comment)]
-    pub(crate) allow_mixed: bool,
-    /// Write the episode and channel tables as CSV too
-    #[arg(long)]
-    pub(crate) csv: bool,
-    /// Threads; 0 takes all cores. The result is the same
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
-    /// Print the findings as JSON on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Print more than fits a screen
-    #[arg(long)]
-    pub(crate) verbose: bool,
-    /// Print nothing but errors and what --json asks for
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct StatusArguments {
-    /// Output directory of the run
-    pub(crate) run: PathBuf,
-    /// Print the numbers of the shards that nobody flies, as an array takes
-    /// them: 3,5-7
-    #[arg(long, verbatim_doc_comment, conflicts_with = "json")]
-    pub(crate) missing: bool,
-    /// Print as JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Print nothing but errors and what --json asks for; the exit code
-    /// says whether episodes are missing
-    #[arg(long, short, verbatim_doc_comment)]
     pub(crate) quiet: bool,
 }
 
@@ -414,12 +316,6 @@ fn share(text: &str, example: &str) -> Result<f64, String> {
     } else {
         Err(format!("must lie between 0 and 1, such as {example}"))
     }
-}
-
-/// A seed.
-fn seed(text: &str) -> Result<u64, String> {
-    let limit = |_| format!("must be a whole number from 0 to {}", u64::MAX);
-    text.parse().map_err(limit)
 }
 
 #[derive(Debug, Args)]
@@ -485,25 +381,4 @@ pub(crate) struct ReplayArguments {
     /// Print nothing but errors and what --json asks for
     #[arg(long, short)]
     pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum BackendChoice {
-    Auto,
-    Gpu,
-    Cpu,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PrecisionChoice {
-    F32,
-    F64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SimdChoice {
-    Auto,
-    Scalar,
-    Avx2,
-    Avx512,
 }

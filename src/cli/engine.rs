@@ -1,7 +1,7 @@
 //! Where and how episodes are to be simulated.
 
-use super::arguments::{BackendChoice, EngineArguments, PrecisionChoice, SimdChoice};
 use super::exit::Failure;
+use super::options::{BackendChoice, EngineArguments, PrecisionChoice, SimdChoice};
 use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::Tuning;
 use urts_mc::simulation::{Backend, RunOptions};

@@ -8,7 +8,9 @@ mod engine;
 pub(crate) mod exit;
 mod halt;
 mod junit;
+mod merge;
 mod new;
+mod options;
 mod progress;
 mod robot;
 mod shards;
@@ -18,16 +20,18 @@ pub(crate) use arguments::Arguments;
 pub(crate) use console::print_error;
 
 use arguments::{
-    CheckArguments, Command, DevicesArguments, Overrides, PlanArguments, ReplayArguments,
-    RunArguments, SynthesizeArguments, TuneArguments,
+    CheckArguments, Command, DevicesArguments, PlanArguments, ReplayArguments, RunArguments,
+    SynthesizeArguments, TuneArguments,
 };
 use completions::completions;
 use console::{print, print_json, print_note};
 use exit::{Code, Failure};
 use halt::Halt;
 use junit::{JunitFile, reported};
+use merge::{merge_command, status_command};
+use options::Overrides;
 use progress::ProgressLine;
-use shards::{merge_command, run_shard, status_command};
+use shards::run_shard;
 use std::collections::BTreeMap;
 use std::path::Path;
 use urts_mc::backend::cpu::{Precision, Simd};

@@ -1,21 +1,17 @@
-//! `run --shard`, `merge` and `status`: a run by several processes.
+//! `run --shard`: a run by several processes.
 
-use super::arguments::{MergeArguments, RunArguments, StatusArguments};
+use super::arguments::RunArguments;
 use super::console::{print, print_json, print_note};
-use super::engine::of_threads;
 use super::exit::{Code, Failure};
 use super::halt::Halt;
 use super::progress::ProgressLine;
 use std::path::Path;
 use urts_mc::campaign::Campaign;
-use urts_mc::report::problems::shortcoming;
-use urts_mc::report::requirements::unmet;
-use urts_mc::report::terminal::{self, Detail};
-use urts_mc::report::{Length, report};
+use urts_mc::report::terminal;
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::shard::{AskedShard, Shard, Shards, shard_of};
 use urts_mc::run::status::Status;
-use urts_mc::run::{Extras, Merging, fly_shard, merge, shards_begun};
+use urts_mc::run::{Extras, fly_shard, shards_begun};
 
 /// The shard that is asked for, and what the engine calls the first; says what was taken from where.
 fn asked(shard: AskedShard, out: &Path, quiet: bool) -> Result<(Shard, Shards), Failure> {
@@ -70,55 +66,4 @@ pub(super) fn run_shard(
         print(&terminal::status(&status))?;
     }
     Ok(Code::Done)
-}
-
-/// Makes one run of shards.
-pub(super) fn merge_command(arguments: &MergeArguments) -> Result<Code, Failure> {
-    let first = arguments.dirs.first().map(std::path::PathBuf::as_path);
-    let out = arguments.out.as_deref().or(first).unwrap_or(Path::new("."));
-    let options = of_threads(arguments.threads);
-    let merging = Merging {
-        csv: arguments.csv,
-        overwrite: arguments.overwrite,
-        allow_mixed: arguments.allow_mixed,
-    };
-    let shown = ProgressLine::of_work("reading parts", arguments.quiet);
-    let merged = merge(&arguments.dirs, out, &options, merging, &|at| {
-        shown.tell(at)
-    });
-    drop(shown);
-    let (campaign, findings) = merged?;
-    report(out, Length::Brief)?;
-    if arguments.json {
-        print_json(&findings)?;
-    } else if !arguments.quiet {
-        let detail = match arguments.verbose {
-            true => Detail::Everything,
-            false => Detail::Screen,
-        };
-        print(&terminal::findings(&campaign, &findings, out, detail))?;
-    }
-    if let Some(error) = shortcoming(&findings.manifest, out) {
-        return Err(Failure::new(Code::Other, error));
-    }
-    match unmet(&findings.manifest) {
-        None => Ok(Code::Done),
-        Some(unmet) => Err(Failure::new(Code::Unmet, unmet)),
-    }
-}
-
-/// Tells how far a run is.
-pub(super) fn status_command(arguments: &StatusArguments) -> Result<Code, Failure> {
-    let status = Status::of(&arguments.run)?;
-    if arguments.json {
-        print_json(&status)?;
-    } else if arguments.missing {
-        print(&format!("{}\n", status.missing()))?;
-    } else if !arguments.quiet {
-        print(&terminal::status(&status))?;
-    }
-    Ok(match status.kept == status.asked || arguments.missing {
-        true => Code::Done,
-        false => Code::Partial,
-    })
 }

@@ -1,9 +1,9 @@
 //! `urts-mc submit`: what begins the shards of a run on a cluster.
 
-use super::arguments::{BackendChoice, EngineArguments, Overrides, PrecisionChoice, SimdChoice};
 use super::console::print;
 use super::exit::{Code, Failure};
 use super::halt::duration;
+use super::options::{BackendChoice, EngineArguments, Overrides, PrecisionChoice, SimdChoice};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -30,7 +30,8 @@ pub use tuning::tuning;
 use crate::results::how_sure;
 use crate::run::directory::OutputDir;
 use crate::run::error::REPORTS;
-use page::document::Document;
+use page::document::{Block, Document, Section};
+use page::plot::Color;
 use page::{html, markdown};
 use problems::shortcoming;
 use requirements::unmet;
@@ -87,6 +88,35 @@ fn document(data: &RunData) -> Document {
         lead,
         band: band::band(data),
         warnings: wrong.into_iter().flatten().collect(),
-        sections: sections.into_iter().flatten().collect(),
+        sections: sections.into_iter().flatten().map(thinned).collect(),
+    }
+}
+
+/// Controllers that a figure shows: more curves cannot be told apart, and the tables have them all.
+const MOST_DRAWN: usize = 12;
+
+/// A section whose figures show no more controllers than can be told apart.
+fn thinned(mut section: Section) -> Section {
+    section.blocks.iter_mut().for_each(thin);
+    section
+}
+
+fn thin(block: &mut Block) {
+    let is_shown = |color: Color| !matches!(color, Color::Series(own) if own >= MOST_DRAWN);
+    match block {
+        Block::Figure(figure) => {
+            for plot in &mut figure.panels {
+                plot.marks.retain(|mark| is_shown(mark.color()));
+            }
+            let all = figure.legend.len();
+            figure.legend.retain(|entry| is_shown(entry.color));
+            if figure.legend.len() < all {
+                let words =
+                    format!(" Drawn are the first {MOST_DRAWN} controllers; the tables have all.");
+                figure.caption.push_str(&words);
+            }
+        }
+        Block::Folded(_, inner) => inner.iter_mut().for_each(thin),
+        _ => {}
     }
 }

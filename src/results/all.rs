@@ -48,8 +48,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// The statistics of a run's scores, and of how restless the commands of its flights are; the permutations of the
-    /// sensitivity analysis take the threads of the pool.
+    /// The statistics of a run's scores, and of how restless the commands of its flights are; they take the
+    /// threads of the pool.
     #[must_use]
     pub fn of(
         campaign: &Campaign,
@@ -58,6 +58,10 @@ impl Results {
         paces: &[Pace],
         pool: &ThreadPool,
     ) -> Self {
+        pool.install(|| Self::on_threads(campaign, gains, scores, paces))
+    }
+
+    fn on_threads(campaign: &Campaign, gains: &[GainSet], scores: &Scores, paces: &[Pace]) -> Self {
         let mut terms = terms(campaign, gains, scores);
         add_paces(&mut terms, paces);
         let chattering = chattering(&terms);
@@ -74,7 +78,7 @@ impl Results {
             comparisons,
             requirements: requirements(campaign, gains, scores),
             screenings,
-            ranking: pool.install(|| rank(campaign, scores)),
+            ranking: rank(campaign, scores),
             worst: worst(campaign, scores),
         }
     }

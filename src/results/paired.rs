@@ -10,6 +10,7 @@ use crate::statistics::{
     Estimate, Interval, LEVEL, PairedFailures, holm, mcnemar_mid_p, median_bca, paired_difference,
     win_rate,
 };
+use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -121,9 +122,10 @@ pub fn compare_pairs(
     pairs: impl IntoIterator<Item = [usize; 2]>,
 ) -> Vec<PairedComparison> {
     let parts = parts(campaign, scores);
+    let pairs: Vec<[usize; 2]> = pairs.into_iter().collect();
     let mut comparisons: Vec<PairedComparison> = pairs
-        .into_iter()
-        .flat_map(|pair| compare_pair(campaign, scores, pair, &parts))
+        .into_par_iter()
+        .flat_map_iter(|pair| compare_pair(campaign, scores, pair, &parts))
         .collect();
     let p_values: Option<Vec<f64>> = comparisons.iter().map(|own| own.mid_p).collect();
     let adjusted = holm(&p_values.unwrap_or_default());

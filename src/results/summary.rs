@@ -10,6 +10,7 @@ use crate::statistics::{
     Interval, LEVEL, clopper_pearson_upper, quantile, quantile_interval, sequential_interval,
     sequential_upper, wilson,
 };
+use rayon::prelude::*;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
@@ -263,8 +264,8 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
     let parts = parts(campaign, scores);
     let intervals = campaign.allows(Method::Quantile);
     let groups = campaign.channel_groups();
-    let mut rows = Vec::new();
-    for controller in 0..campaign.controllers.len() {
+    let of_controller = |controller: usize| {
+        let mut rows = Vec::new();
         let numbers_of = |of: &ChannelsOfCampaign| {
             let all = EpisodeNumber::ALL.iter();
             let of_number = |&number| {
@@ -298,6 +299,8 @@ pub fn summarise(campaign: &Campaign, scores: &Scores) -> Vec<MetricQuantiles> {
                 }
             }
         }
-    }
-    rows
+        rows
+    };
+    let controllers = (0..campaign.controllers.len()).into_par_iter();
+    controllers.flat_map_iter(of_controller).collect()
 }

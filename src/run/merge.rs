@@ -27,7 +27,7 @@ pub enum MergeError {
     Campaign(#[from] CampaignError),
     /// What was made of the parts cannot be concluded.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Run(Box<RunError>),
     /// No threads.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -69,6 +69,12 @@ pub enum MergeError {
         /// What to do.
         remedy: String,
     },
+}
+
+impl From<RunError> for MergeError {
+    fn from(error: RunError) -> Self {
+        Self::Run(Box::new(error))
+    }
 }
 
 /// What a merge does beside making one run.

@@ -144,8 +144,8 @@ const CONVENTIONS: [Convention; 5] = [
 ];
 
 /// The shard that the engine says this process is, what the engine calls the first, and a sentence on what it was taken
-/// from. `variable` reads the environment; `begun` is in how many shards the directory was begun, if it was: an array of
-/// those that are missing says nothing of how many there are.
+/// from. `variable` reads the environment; `begun` is in how many shards the directory was begun, if it was: an array
+/// of those that are missing says nothing of how many there are.
 ///
 /// # Errors
 /// If no engine says so, or nothing says of how many.

@@ -56,8 +56,8 @@ impl Effect {
 /// Sampling ends at the 50th such permutation, which keeps it valid (Besag and Clifford 1991,
 /// Biometrika 78:301-304) and makes parameters without effect cheap.
 ///
-/// Of more than [`Permutations::shuffled`] rows the p-values are those that infinitely many permutations would give in the
-/// limit of many rows, or are found from the few rows that decide: see [`large_sample_p`].
+/// Of more than [`Permutations::shuffled`] rows the p-values are those of the limit of many rows, or are found from the
+/// few rows that decide.
 ///
 /// The permutations depend on the seed alone. Parameters with the same rows and the same ties have
 /// the same permutation distribution and share it: 300 continuous parameters cost little more than

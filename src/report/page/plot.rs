@@ -59,6 +59,14 @@ pub(crate) enum Mark {
     Dots(Vec<(f64, f64)>, Color),
 }
 
+impl Mark {
+    pub(crate) fn color(&self) -> Color {
+        match self {
+            Self::Line(_, color, _) | Self::Band(_, color) | Self::Dots(_, color) => *color,
+        }
+    }
+}
+
 /// One axis.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Axis {

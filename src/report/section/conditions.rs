@@ -17,6 +17,8 @@ use std::collections::BTreeMap;
 const MOST: usize = 6;
 /// Worst episodes of each controller that are shown at once.
 const WORST: f64 = 3.0;
+/// Controllers of which more than these are listed: worst.csv has all.
+const MOST_LISTED: usize = 12;
 /// Groups of episodes, from the lowest to the highest value of a condition.
 const BINS: usize = 10;
 
@@ -344,6 +346,10 @@ pub(crate) fn worst(data: &RunData) -> Section {
         let episode = table.real(row, "episode");
         let excess = table.real(row, "largest_error_over_limit");
         let rank = table.real(row, "rank");
+        let place = data.controller(controller);
+        if rank > WORST && place.is_some_and(|place| place >= MOST_LISTED) {
+            continue;
+        }
         let own = if rank <= WORST { &mut grid } else { &mut rest };
         own.rows.push(vec![
             Cell::text(controller),

@@ -11,8 +11,8 @@ use crate::util::format;
 /// Points of a drawn distribution: more cannot be told apart.
 const MOST_POINTS: usize = 300;
 
-/// Controllers up to which every pair is written out; of more, those with the first: there are as many pairs as the square
-/// of the controllers.
+/// Controllers up to which every pair is written out; of more, those with the first: the number of pairs grows as the
+/// square of that of the controllers.
 const WITH_ALL_PAIRS: usize = 12;
 
 /// The comparison of every pair.

@@ -3,6 +3,7 @@
 
 mod file;
 mod folder;
+mod gather;
 mod plan;
 mod record;
 mod store;

@@ -27,16 +27,16 @@ const MOST: usize = 1024;
 #[derive(Debug)]
 pub(crate) struct Parts {
     /// The run's directory.
-    out: PathBuf,
-    dir: PathBuf,
-    plan: Plan,
-    id: String,
-    record: Record,
+    pub(super) out: PathBuf,
+    pub(super) dir: PathBuf,
+    pub(super) plan: Plan,
+    pub(super) id: String,
+    pub(super) record: Record,
     /// Those that this process looks after: all, or a shard's.
-    own: Range<u32>,
+    pub(super) own: Range<u32>,
     /// Keeps others from the same shard.
-    lock: Option<Lock>,
-    held: BTreeMap<u32, Header>,
+    pub(super) lock: Option<Lock>,
+    pub(super) held: BTreeMap<u32, Header>,
     /// What there is to know about those that were there.
     pub(crate) notes: Vec<String>,
 }
@@ -127,73 +127,6 @@ impl Parts {
         Ok(parts)
     }
 
-    /// The parts that are in some directories, in one of their own or in one of them.
-    ///
-    /// # Errors
-    /// If they contradict each other, or cannot be written there.
-    pub(crate) fn gathered(
-        dirs: &[PathBuf],
-        out: &OutputDir,
-        campaign: &Campaign,
-        plan: Plan,
-    ) -> Result<Self, OutputError> {
-        let found = judged(out.path(), campaign, &plan, Resume::default())?;
-        let mut all = Self::none(out.path(), campaign, plan);
-        if matches!(found, Found::Ours) {
-            all.find();
-        }
-        let place = |dir: &Path| dir.canonicalize().ok();
-        for dir in dirs.iter().filter(|dir| place(dir) != place(out.path())) {
-            let mut others = Self::none(dir, campaign, all.plan.clone());
-            others.find();
-            if !all.gains().exists() {
-                let path = others.gains();
-                let gains = fs::read(&path);
-                let gains = gains.map_err(|source| OutputError::Unwritable { path, source })?;
-                all.begin(&gains)?;
-            }
-            for index in others.held.keys() {
-                if let Some((header, bytes)) = others.read(*index)? {
-                    all.take_in(dir, *index, header, &bytes)?;
-                }
-            }
-            all.notes.append(&mut others.notes);
-        }
-        Ok(all)
-    }
-
-    /// Takes in a part of another directory.
-    fn take_in(
-        &mut self,
-        from: &Path,
-        index: u32,
-        header: Header,
-        bytes: &[u8],
-    ) -> Result<(), OutputError> {
-        if let Some((_, own)) = self.read(index)? {
-            let common = own.len().min(bytes.len());
-            if own[..common] != bytes[..common] {
-                return Err(OutputError::DamagedPart {
-                    path: self.dir.join(self.name(index)),
-                    reason: format!("{} holds other numbers of its episodes", from.display()),
-                });
-            }
-        }
-        self.write(index, header, bytes)
-    }
-
-    /// The parts of a directory, whoever flies them, by what they say of themselves.
-    pub(crate) fn seen(out: &Path, campaign: &Campaign, plan: Plan) -> Self {
-        let mut parts = Self::none(out, campaign, plan);
-        for index in 0..parts.count() {
-            let said = file::header(&parts.dir.join(parts.name(index)));
-            if let Ok(header) = said.and_then(|own| parts.expected(index, own)) {
-                parts.held.insert(index, header);
-            }
-        }
-        parts
-    }
-
     /// The process that holds the whole run, if there is one.
     pub(crate) fn pilot(&self) -> Option<String> {
         Lock::holder_of(&self.out, LOCK)
@@ -205,7 +138,7 @@ impl Parts {
         kept.min(self.episodes_of(index))
     }
 
-    fn none(out: &Path, campaign: &Campaign, plan: Plan) -> Self {
+    pub(super) fn none(out: &Path, campaign: &Campaign, plan: Plan) -> Self {
         let mut parts = Self {
             out: out.to_path_buf(),
             dir: out.join(FOLDER),
@@ -222,7 +155,7 @@ impl Parts {
     }
 
     /// Writes whose the parts are.
-    fn begin(&self, gains: &[u8]) -> Result<(), OutputError> {
+    pub(super) fn begin(&self, gains: &[u8]) -> Result<(), OutputError> {
         self.folder().write(GAINS, gains)?;
         let json = serde_json::to_vec_pretty(&self.plan).map_err(Error::other);
         let json = json.map_err(|error| self.unwritable(error))?;
@@ -235,7 +168,7 @@ impl Parts {
     }
 
     /// Finds the parts that are there and whole.
-    fn find(&mut self) {
+    pub(super) fn find(&mut self) {
         let entries = fs::read_dir(&self.dir).into_iter().flatten().flatten();
         for entry in entries {
             let name = entry.file_name().to_string_lossy().into_owned();
@@ -307,7 +240,7 @@ impl Parts {
         OutputError::Unwritable { path, source }
     }
 
-    fn name(&self, index: u32) -> String {
+    pub(super) fn name(&self, index: u32) -> String {
         format!("{PART}{index:08}")
     }
 
@@ -441,7 +374,7 @@ impl Parts {
     }
 
     /// What a part holds of this plan, if it is what is expected of it.
-    fn expected(&self, index: u32, mut header: Header) -> Result<Header, String> {
+    pub(super) fn expected(&self, index: u32, mut header: Header) -> Result<Header, String> {
         if header.plan != self.id {
             return Err("it is of another run".to_string());
         }

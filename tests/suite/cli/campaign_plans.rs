@@ -206,3 +206,23 @@ fn designs_and_stops_that_cannot_be_are_refused() {
         &["--episodes = 6", "simulate 8 episodes"],
     );
 }
+
+#[test]
+fn the_number_of_episodes_that_is_asked_for_is_judged_and_not_the_one_of_the_file() {
+    let strata = "[[strata]]\nfaults = []\nshare = 5\n[[strata]]\nfaults = \"all\"\n[verdict]";
+    let place = Place::smoke(&[("[verdict]", strata)]);
+    // Three are too few to go round once, whoever says so.
+    let words = [
+        "episodes (",
+        ") = 3: the shares of the 2 strata take 6 episodes",
+    ];
+    place.refuses(&["check", "c.toml"], 2, &words);
+    place.succeeds(&["check", "c.toml", "--episodes", "6"]);
+    let words = ["--episodes = 5: the shares of the 2 strata take 6 episodes"];
+    place.refuses(&["check", "c.toml", "--episodes", "5"], 2, &words);
+    // A run of so many is read back as it was flown.
+    let run = ["run", "c.toml", "--episodes", "6", "--out", "out"];
+    place.succeeds(&run);
+    place.succeeds(&["replay", "out", "--episode", "5"]);
+    place.succeeds(&["report", "out"]);
+}

@@ -469,3 +469,28 @@ fn the_schema_knows_every_key_of_every_shipped_campaign() {
         );
     }
 }
+
+#[test]
+fn a_report_of_two_hundred_controllers_can_be_opened() {
+    let place = super::parts::place();
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    let names: Vec<String> = (0..199).map(|number| format!("p{number}")).collect();
+    let listed: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let named = names.iter().map(|name| {
+        format!("named.{name} = {{ gains = \"out/gains.json\", controller = \"pid\" }}\n")
+    });
+    let controllers = format!("controllers = [\"ftc\", {}]", listed.join(", "));
+    let preset = "preset = \"uav-paper\"\n";
+    let text = place.read("c.toml");
+    let text = text.replace("controllers = [\"ftc\", \"pid\"]", &controllers);
+    let text = text.replace(preset, &format!("{preset}{}", named.collect::<String>()));
+    place.write("c.toml", text);
+    place.succeeds(&["run", "c.toml", "--out", "many", "--episodes", "40"]);
+    let report = place.read("many/report.html");
+    assert!(report.len() <= 3_000_000, "{} bytes", report.len());
+    assert!(report.contains("Drawn are the first 12 controllers"));
+    assert!(report.contains("ftc against p198") && !report.contains("p197 against p198"));
+    // Of few, nothing is left out.
+    let report = place.read("out/report.html");
+    assert!(!report.contains("Drawn are the first"));
+}
