@@ -18,7 +18,8 @@ pub struct Permutations {
     /// Seed of the campaign: the same permutations wherever and whenever the test is repeated.
     pub seed: u64,
     /// Their largest number m. The smallest p-value is 1 / (m + 1), and that of
-    /// [`Effect::p_value`](super::Effect::p_value) twice that: 300 parameters under Holm's correction at 5 % need 11,999.
+    /// [`Effect::p_value`](super::Effect::p_value) twice that: 300 parameters under Holm's correction at 5 % need
+    /// 11,999.
     pub most: u32,
     /// Rows up to which all of them are permuted; of more, the limit of many rows is taken.
     pub shuffled: usize,
