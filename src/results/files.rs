@@ -14,8 +14,6 @@ use std::borrow::Cow;
 pub struct Found<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
-    /// What was filled as batches ended.
-    pub tables: &'a Tables,
     /// Every statistic on it.
     pub results: &'a Results,
     /// Flights that were simulated again.
@@ -25,15 +23,9 @@ pub struct Found<'a> {
 impl<'a> Found<'a> {
     /// What a campaign's run has found.
     #[must_use]
-    pub fn new(
-        campaign: &'a Campaign,
-        tables: &'a Tables,
-        results: &'a Results,
-        flights: &'a Flights,
-    ) -> Self {
+    pub fn new(campaign: &'a Campaign, results: &'a Results, flights: &'a Flights) -> Self {
         Self {
             campaign,
-            tables,
             results,
             flights,
         }
@@ -45,70 +37,69 @@ impl<'a> Found<'a> {
 pub struct RunTable {
     /// Its file's name without the extension.
     pub name: &'static str,
-    /// Whether it grows with the episodes, so that it is written as CSV only if that is asked for.
-    pub is_large: bool,
     /// Its rows and columns.
-    pub make: for<'a> fn(Found<'a>) -> Cow<'a, Table>,
+    pub rows: Rows,
+}
+
+/// Where the rows of a table are from.
+#[derive(Debug, Clone, Copy)]
+pub enum Rows {
+    /// Filled episode by episode: it grows with them, so it is written piece by piece, and as CSV only if that is asked
+    /// for.
+    Large(fn(&mut Tables) -> &mut Table),
+    /// Made when all is known.
+    Small(for<'a> fn(Found<'a>) -> Cow<'a, Table>),
 }
 
 /// All tables, in the order of the README.
 pub const RUN_TABLES: &[RunTable] = &[
     RunTable {
         name: "episodes",
-        is_large: true,
-        make: |found| Cow::Borrowed(&found.tables.episodes),
+        rows: Rows::Large(|tables| &mut tables.episodes),
     },
     RunTable {
         name: "channels",
-        is_large: true,
-        make: |found| Cow::Borrowed(&found.tables.channels),
+        rows: Rows::Large(|tables| &mut tables.channels),
     },
     RunTable {
         name: "faults",
-        is_large: true,
-        make: |found| Cow::Borrowed(&found.tables.faults),
+        rows: Rows::Large(|tables| &mut tables.faults),
     },
     RunTable {
         name: "conditions",
-        is_large: true,
-        make: |found| Cow::Borrowed(&found.tables.conditions_drawn),
+        rows: Rows::Large(|tables| &mut tables.conditions_drawn),
     },
     RunTable {
         name: "summary",
-        is_large: false,
-        make: |found| Cow::Owned(summary_table(&found.results.summary)),
+        rows: Rows::Small(|found| Cow::Owned(summary_table(&found.results.summary))),
     },
     RunTable {
         name: "fairness",
-        is_large: false,
-        make: |found| Cow::Owned(fairness_table(&found.results.terms)),
+        rows: Rows::Small(|found| Cow::Owned(fairness_table(&found.results.terms))),
     },
     // One controller has nothing to be compared with.
     RunTable {
         name: "comparison",
-        is_large: false,
-        make: |found| Cow::Owned(comparison_table(found.campaign, &found.results.comparisons)),
+        rows: Rows::Small(|found| {
+            Cow::Owned(comparison_table(found.campaign, &found.results.comparisons))
+        }),
     },
     // Without strata nothing is screened.
     RunTable {
         name: "screening",
-        is_large: false,
-        make: |found| Cow::Owned(screening_table(&found.results.screenings)),
+        rows: Rows::Small(|found| Cow::Owned(screening_table(&found.results.screenings))),
     },
     // Where nothing varies, nothing is ranked.
     RunTable {
         name: "ranking",
-        is_large: false,
-        make: |found| Cow::Owned(ranking_table(&found.results.ranking)),
+        rows: Rows::Small(|found| Cow::Owned(ranking_table(&found.results.ranking))),
     },
     RunTable {
         name: "worst",
-        is_large: false,
-        make: |found| Cow::Owned(worst_table(&found.results.worst)),
+        rows: Rows::Small(|found| Cow::Owned(worst_table(&found.results.worst))),
     },
     RunTable {
         name: "flights",
-        is_large: false,
-        make: |found| Cow::Borrowed(&found.flights.table),
+        rows: Rows::Small(|found| Cow::Borrowed(&found.flights.table)),
     },
 ];

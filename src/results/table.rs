@@ -29,6 +29,21 @@ enum Values {
 }
 
 impl Values {
+    /// Takes away the first cells.
+    fn split_front(&mut self, count: usize) -> Self {
+        fn split<T>(values: &mut Vec<T>, count: usize) -> Vec<T> {
+            let rest = values.split_off(count.min(values.len()));
+            std::mem::replace(values, rest)
+        }
+        match self {
+            Self::Real(values) => Self::Real(split(values, count)),
+            Self::Count(values) => Self::Count(split(values, count)),
+            Self::Word(values) => Self::Word(split(values, count)),
+            Self::Name(values) => Self::Name(split(values, count)),
+            Self::Flag(values) => Self::Flag(split(values, count)),
+        }
+    }
+
     /// Adds empty cells up to a number of rows.
     fn fill(&mut self, rows: usize) {
         match self {
@@ -130,7 +145,33 @@ impl Table {
     /// Whether no row was begun.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.columns.is_empty()
+        self.rows == 0
+    }
+
+    /// Rows so far.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Takes away the first rows, as a table of their own; all if there are no more.
+    #[must_use]
+    pub fn split_front(&mut self, rows: usize) -> Self {
+        let rows = rows.min(self.rows);
+        if self.kinds.len() > 1 {
+            // The last row may lack cells of the last columns.
+            let all = self.rows;
+            self.columns.iter_mut().for_each(|(_, own)| own.fill(all));
+        }
+        let columns = self.columns.iter_mut();
+        let front = columns.map(|(name, values)| (name.clone(), values.split_front(rows)));
+        let front = Self {
+            columns: front.collect(),
+            kinds: self.kinds.clone(),
+            rows,
+        };
+        self.rows -= rows;
+        front
     }
 
     /// The finished table.

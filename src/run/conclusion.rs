@@ -5,12 +5,12 @@ use super::error::{GAINS, MANIFEST};
 use super::failure::RunError;
 use super::findings::Findings;
 use super::flights::flights;
-use super::integrity::{FileRecord, records};
+use super::integrity::records;
 use super::manifest::{GIT_REVISION, Manifest};
 use super::parts::Parts;
 use super::progress::Progress;
 use super::staging::Staging;
-use super::tables;
+use super::tables::{LargeTables, write_small};
 use super::tabulation::{Tabulated, tabulate};
 use crate::backend::gpu::GpuError;
 use crate::campaign::Campaign;
@@ -23,7 +23,6 @@ use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::{Segment, Times};
 use crate::util::json::pretty;
 use rayon::ThreadPool;
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// The cross-check of some segments whose scores are given; or why there is none though there should be.
@@ -59,7 +58,9 @@ impl Conclusion<'_> {
         let mut times = self.times;
         progress(Progress::Tables);
         let start = Instant::now();
-        let made = tabulate(campaign, parts, self.pool)?;
+        let staging = Staging::within(self.out)?;
+        let large = LargeTables::new(campaign, staging.files(), self.csv);
+        let made = tabulate(campaign, parts, self.pool, large)?;
         times.statistics_s += start.elapsed().as_secs_f64();
         unless_more_is_there(self.out, self.interrupted.as_ref(), made.episodes())?;
 
@@ -75,8 +76,9 @@ impl Conclusion<'_> {
 
         progress(Progress::Writing);
         let start = Instant::now();
-        let found = Found::new(campaign, &made.tables, &results, &flights);
-        let (staging, files) = staged(found, self.gains_file, self.csv, self.out)?;
+        write_small(Found::new(campaign, &results, &flights), staging.files())?;
+        staging.files().write(GAINS, self.gains_file)?;
+        let files = records(staging.files().path(), counted())?;
         times.writing_s = start.elapsed().as_secs_f64();
         let plan = parts.plan();
         let mut robots = plan.robots.clone();
@@ -132,21 +134,6 @@ fn statistics(
     let flights = pool.install(|| flights(campaign, gains, scores));
     let results = Results::of(campaign, gains, scores, &flights.paces, pool);
     (results, flights)
-}
-
-/// All files but the manifest, written beside those of an earlier run; with their records.
-fn staged(
-    found: Found<'_>,
-    gains: &[u8],
-    csv: bool,
-    out: &OutputDir,
-) -> Result<(Staging, BTreeMap<String, FileRecord>), RunError> {
-    let staging = Staging::within(out)?;
-    let files = staging.files();
-    tables::write(found, csv, files)?;
-    files.write(GAINS, gains)?;
-    let records = records(files.path(), counted())?;
-    Ok((staging, records))
 }
 
 /// An error if the directory keeps more episodes of an earlier run than an interrupted one has.

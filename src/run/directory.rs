@@ -7,19 +7,15 @@ use super::labels::Labels;
 use super::lock::{LOCK, Lock, NotHeld, Sharing};
 use super::manifest::{Manifest, campaign_hash};
 use super::replacement::recover;
+use super::sink::{Sink, part_in};
+use super::table_file::TableFile;
 use crate::campaign::Campaign;
 use crate::results::table::Table;
-use polars::prelude::{
-    CsvWriter, KeyValueMetadata, ParquetCompression, ParquetWriter, PolarsError, SerWriter,
-};
-use std::fs::{self, File};
-use std::io::{BufWriter, ErrorKind, Write};
+use polars::prelude::DataFrame;
+use std::fs;
+use std::io::{ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
-use tempfile::NamedTempFile;
-
-/// Rows per group of a Parquet file: fixed, so that the bytes do not depend on how the rows came about.
-const ROW_GROUP: usize = 1 << 18;
 
 /// A directory that this run may write.
 #[derive(Debug, Clone)]
@@ -184,15 +180,10 @@ impl OutputDir {
         table: &Table,
         labels: &Labels,
     ) -> Result<(), OutputError> {
-        self.write_table(name, table, |file, frame| {
-            let metadata = labels.of(frame);
-            ParquetWriter::new(file)
-                .with_compression(ParquetCompression::Snappy)
-                .with_row_group_size(Some(ROW_GROUP))
-                .with_key_value_metadata(Some(KeyValueMetadata::from_static(metadata)))
-                .finish(frame)
-                .map(|_| ())
-        })
+        let frame = self.frame(name, table)?;
+        let mut file = self.parquet(name, &frame, labels)?;
+        file.write(&frame)?;
+        file.finish()
     }
 
     /// Writes a table as CSV.
@@ -200,37 +191,56 @@ impl OutputDir {
     /// # Errors
     /// If the table cannot be encoded or written.
     pub fn write_csv(&self, name: &str, table: &Table) -> Result<(), OutputError> {
-        self.write_table(name, table, |file, frame| {
-            CsvWriter::new(file).finish(frame)
+        let frame = self.frame(name, table)?;
+        let mut file = self.csv(name)?;
+        file.write(&frame)?;
+        file.finish()
+    }
+
+    /// A table as it is written.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub(super) fn frame(&self, name: &str, table: &Table) -> Result<DataFrame, OutputError> {
+        table.to_frame().map_err(|source| OutputError::Table {
+            path: self.shown.join(name),
+            source,
         })
     }
 
-    fn write_table(
+    /// Begins a table as Parquet, of which the first rows are given.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn parquet(
         &self,
         name: &str,
-        table: &Table,
-        encode: impl FnOnce(&mut Sink, &mut polars::prelude::DataFrame) -> Result<(), PolarsError>,
-    ) -> Result<(), OutputError> {
-        let broken = |source| OutputError::Table {
+        first: &DataFrame,
+        labels: &Labels,
+    ) -> Result<TableFile, OutputError> {
+        self.made(name)?;
+        TableFile::parquet([&self.path, &self.shown], name, first, labels)
+    }
+
+    /// Begins a table as CSV.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn csv(&self, name: &str) -> Result<TableFile, OutputError> {
+        self.made(name)?;
+        TableFile::csv([&self.path, &self.shown], name)
+    }
+
+    /// Makes the directory. The folder of a run that is on the way is there, or somebody took it away.
+    fn made(&self, name: &str) -> Result<(), OutputError> {
+        let made = match self.path == self.shown {
+            true => fs::create_dir_all(&self.path),
+            false => Ok(()),
+        };
+        made.map_err(|source| OutputError::Unwritable {
             path: self.shown.join(name),
             source,
-        };
-        let mut frame = table.to_frame().map_err(broken)?;
-        let mut encoded = Ok(());
-        let written = self.write_with(name, |file| {
-            encoded = encode(file, &mut frame);
-            match (&encoded, file.broken.take()) {
-                (Ok(()), _) => Ok(()),
-                // Encoders call a full disk a malformed table.
-                (Err(_), Some(error)) => {
-                    encoded = Ok(());
-                    Err(error)
-                }
-                // Keeps the file from getting its final name; the encoder's own error is reported.
-                (Err(_), None) => Err(ErrorKind::InvalidData.into()),
-            }
-        });
-        encoded.map_err(broken).and(written)
+        })
     }
 
     fn write_with(
@@ -238,13 +248,9 @@ impl OutputDir {
         name: &str,
         fill: impl FnOnce(&mut Sink) -> std::io::Result<()>,
     ) -> Result<(), OutputError> {
+        self.made(name)?;
         let whole = self.path.join(name);
-        // The folder of a run that is on the way is there, or somebody took it away.
-        let made = match self.path == self.shown {
-            true => fs::create_dir_all(&self.path),
-            false => Ok(()),
-        };
-        let written = made.and_then(|()| part_in(&self.path)).and_then(|part| {
+        let written = part_in(&self.path).and_then(|part| {
             let (file, part) = part.into_parts();
             let mut file = Sink::new(file);
             fill(&mut file)?;
@@ -266,64 +272,12 @@ impl OutputDir {
     }
 }
 
-/// A file whose name nobody can guess, readable as others that the user makes.
-pub(super) fn part_in(dir: &Path) -> std::io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(ON_THE_WAY).suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(dir)
-}
-
 /// That a run of the same campaign was made with other files than the campaign names now.
 fn other_files(run: &Manifest, campaign: &Campaign) -> Option<String> {
     let now = inputs(campaign);
     let differs = |(path, hash): &(&String, &String)| now.get(*path) != Some(*hash);
     let (path, _) = run.inputs.iter().find(differs)?;
     Some(format!("a run of this campaign with another {path}"))
-}
-
-/// A file that is being written, and what its disk said first when it took no more.
-struct Sink {
-    file: BufWriter<File>,
-    broken: Option<std::io::Error>,
-}
-
-impl Sink {
-    fn new(file: File) -> Self {
-        let (file, broken) = (BufWriter::new(file), None);
-        Self { file, broken }
-    }
-
-    /// Brings all to the disk: a file that has its final name is whole even after a loss of power.
-    fn finish(mut self) -> std::io::Result<()> {
-        self.flush()?;
-        self.file.get_ref().sync_all()
-    }
-
-    /// Keeps an error, for the encoder may not.
-    fn heard<T>(&mut self, result: std::io::Result<T>) -> std::io::Result<T> {
-        if let Err(error) = &result
-            && error.kind() != ErrorKind::Interrupted
-        {
-            let again = error.raw_os_error().map(std::io::Error::from_raw_os_error);
-            let again = again.unwrap_or_else(|| error.kind().into());
-            self.broken.get_or_insert(again);
-        }
-        result
-    }
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.file.write(bytes);
-        self.heard(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        let flushed = self.file.flush();
-        self.heard(flushed)
-    }
 }
 
 /// Removes a file that may be absent.

@@ -1,8 +1,9 @@
 //! A single file that a command writes.
 
-use super::directory::{OutputDir, part_in};
+use super::directory::OutputDir;
 use super::error::OutputError;
 use super::labels::Labels;
+use super::sink::part_in;
 use crate::results::table::Table;
 use std::fs;
 use std::io::ErrorKind;

@@ -20,7 +20,8 @@ pub(crate) struct TableReader {
 enum Column {
     /// Numbers and flags; not a number where the cell is empty.
     Reals(Vec<f64>),
-    Texts(Vec<String>),
+    /// Few different texts, and which of them each row has.
+    Texts(Vec<String>, Vec<u32>),
 }
 
 impl TableReader {
@@ -98,7 +99,10 @@ impl TableReader {
     /// A text of a row.
     pub(crate) fn text(&self, row: usize, name: &str) -> &str {
         match self.columns.get(name) {
-            Some(Column::Texts(values)) => values.get(row).map_or("", String::as_str),
+            Some(Column::Texts(texts, rows)) => {
+                let text = rows.get(row).and_then(|place| texts.get(*place as usize));
+                text.map_or("", String::as_str)
+            }
             _ => "",
         }
     }
@@ -118,10 +122,19 @@ impl TableReader {
 
 fn column(column: &PolarsColumn) -> PolarsResult<Column> {
     if column.dtype() == &DataType::String {
-        let texts = column.str()?.iter();
-        return Ok(Column::Texts(
-            texts.map(|text| text.unwrap_or("").to_string()).collect(),
-        ));
+        let (mut texts, mut known) = (Vec::new(), HashMap::new());
+        let place = |text: Option<&str>| {
+            let text = text.unwrap_or_default();
+            if let Some(place) = known.get(text) {
+                return *place;
+            }
+            let place = u32::try_from(texts.len()).unwrap_or(u32::MAX);
+            texts.push(text.to_string());
+            known.insert(text.to_string(), place);
+            place
+        };
+        let rows = column.str()?.iter().map(place).collect();
+        return Ok(Column::Texts(texts, rows));
     }
     let reals = column.cast(&DataType::Float64)?;
     let reals = reals.f64()?.iter();

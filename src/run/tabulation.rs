@@ -2,6 +2,7 @@
 
 use super::error::OutputError;
 use super::parts::{Outcomes, Parts};
+use super::tables::LargeTables;
 use crate::backend::EpisodeResult;
 use crate::campaign::Campaign;
 use crate::draw::draw;
@@ -29,14 +30,15 @@ impl Tabulated {
 }
 
 /// Makes the tables of the episodes that are kept, from the first to the first that is not, or to the one that ends the
-/// run early.
+/// run early; those that grow with the episodes leave memory for their files.
 ///
 /// # Errors
-/// If a part is not what was written.
+/// If a part is not what was written, or a file cannot be.
 pub(super) fn tabulate(
     campaign: &Campaign,
     parts: &Parts,
     pool: &ThreadPool,
+    mut files: LargeTables<'_>,
 ) -> Result<Tabulated, OutputError> {
     let mut made = Tabulated {
         tables: Tables::new(campaign),
@@ -58,6 +60,7 @@ pub(super) fn tabulate(
             drawn.map(|own| drawn_again(campaign, own)).collect()
         });
         let added = made.add(campaign, &episodes);
+        files.take(&mut made.tables)?;
         let mut left = added;
         for segment in &header.segments {
             let mut own = segment.clone();
@@ -69,6 +72,7 @@ pub(super) fn tabulate(
             break;
         }
     }
+    files.finish(&mut made.tables)?;
     Ok(made)
 }
 
