@@ -251,7 +251,15 @@ const TWINS: &[(&str, &str, Pairs)] = &[
 const IN_RUST_ALONE: &[(&[&str], &str)] = &[
     (
         &[
-            "new", "none", "zero", "kept", "key", "from_fn", "map", "numbers",
+            "new",
+            "none",
+            "zero",
+            "kept",
+            "key",
+            "from_fn",
+            "map",
+            "numbers",
+            "of_numbers",
         ],
         "made or read by the host",
     ),

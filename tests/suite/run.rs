@@ -3,4 +3,5 @@
 mod cma_es;
 mod compare;
 mod digests;
+mod shards;
 mod tune;

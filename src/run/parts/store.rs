@@ -413,7 +413,8 @@ impl Parts {
 
     /// Takes the folder away if it holds no part: a process that flew nothing leaves nothing.
     pub(crate) fn leave(&mut self) {
-        if self.held.is_empty() {
+        // What other shards have flown is theirs.
+        if self.held.is_empty() && self.lock.is_none() {
             // What is left is written over by the next.
             let _ = self.remove();
         }
