@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 pub(super) struct Halt {
     signalled: Arc<AtomicBool>,
     until: Option<Instant>,
+    /// Whether somebody has asked before.
+    begun: AtomicBool,
 }
 
 impl Halt {
@@ -34,13 +36,16 @@ impl Halt {
         Ok(Self {
             signalled,
             until: longest.and_then(|longest| Instant::now().checked_add(longest)),
+            begun: AtomicBool::new(false),
         })
     }
 
-    /// Whether to end.
+    /// Whether to end. However short the time is, a batch is flown in it: a process that is begun again and again comes
+    /// to an end.
     pub(super) fn is_asked(&self) -> bool {
+        let begun = self.begun.swap(true, Ordering::Relaxed);
         let is_over = self.until.is_some_and(|until| Instant::now() >= until);
-        is_over || self.signalled.load(Ordering::Relaxed)
+        is_over && begun || self.signalled.load(Ordering::Relaxed)
     }
 }
 

@@ -127,6 +127,8 @@ array=$(sbatch --parsable <<'URTS_MC'
 # Out of time: what was flown is kept, and the task goes on with it.
 if [ "$code" -eq 5 ]; then
     scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}"
+    # That ends this task; leaving before it does would end it as failed, and the merge would never begin.
+    sleep 600
 fi
 exit "$code"
 URTS_MC

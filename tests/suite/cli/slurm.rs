@@ -146,7 +146,7 @@ fn a_task_that_runs_out_of_time_is_queued_again_and_goes_on() {
         "--episodes",
         "4500",
         "--set",
-        "time.duration_s=20.0",
+        "time.duration_s=100.0",
         "--slurm",
         "2",
         "--backend",
@@ -175,7 +175,7 @@ fn a_task_that_runs_out_of_time_is_queued_again_and_goes_on() {
     assert!(place.path("out/manifest.json").exists(), "{logs}");
     assert_eq!(
         place
-            .program(&run("whole", &["--set", "time.duration_s=20.0"]))
+            .program(&run("whole", &["--set", "time.duration_s=100.0"]))
             .code,
         0
     );

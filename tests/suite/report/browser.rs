@@ -143,7 +143,8 @@ fn a_browser_shows_the_pages_of_replays_whole_and_asks_for_nothing() {
     // Faults of every kind shaded; robots that walk, and that fall under the PIDs.
     for (name, controller, least_panels) in [("uav-faults", "pid", 90), ("biped-paper", "ftc", 95)]
     {
-        let run = Run::of(name, 4, &[]);
+        // As many as it takes to go round the strata once.
+        let run = Run::of(name, 40, &[]);
         let dir = run.path("");
         let asked = [
             "replay",
