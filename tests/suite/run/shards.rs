@@ -22,11 +22,13 @@ fn a_shard_that_is_ended_before_it_flew_anything_leaves_what_others_have_flown()
             ..Extras::default()
         };
         let shards = Shards { of: 2, first: 1 };
-        fly_shard(&campaign, &options, &out, (shard, shards), extras, &|_| ())
+        let flown = fly_shard(&campaign, &options, &out, (shard, shards), extras, &|_| ());
+        flown.map_err(Box::new)
     };
     assert_eq!(fly(1, &|| false).unwrap().episodes, 1024);
-    let Err(RunError::Partial { kept, asked, .. }) = fly(2, &|| true) else {
-        panic!("it has flown");
+    let ended = fly(2, &|| true).unwrap_err();
+    let RunError::Partial { kept, asked, .. } = *ended else {
+        panic!("{ended}");
     };
     assert_eq!((kept, asked), (0, 76));
     assert_eq!(Status::of(&path).unwrap().kept, 1024);
