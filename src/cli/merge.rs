@@ -4,11 +4,10 @@ use super::console::{print, print_json};
 use super::engine::of_threads;
 use super::exit::{Code, Failure};
 use super::progress::ProgressLine;
+use super::said::{Said, judged};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use urts_mc::report::problems::shortcoming;
-use urts_mc::report::requirements::unmet;
-use urts_mc::report::terminal::{self, Detail};
+use urts_mc::report::terminal;
 use urts_mc::report::{Length, report};
 use urts_mc::run::status::Status;
 use urts_mc::run::{Merging, merge};
@@ -79,22 +78,13 @@ pub(super) fn merge_command(arguments: &MergeArguments) -> Result<Code, Failure>
     drop(shown);
     let (campaign, findings) = merged?;
     report(out, Length::Brief)?;
-    if arguments.json {
-        print_json(&findings)?;
-    } else if !arguments.quiet {
-        let detail = match arguments.verbose {
-            true => Detail::Everything,
-            false => Detail::Screen,
-        };
-        print(&terminal::findings(&campaign, &findings, out, detail))?;
-    }
-    if let Some(error) = shortcoming(&findings.manifest, out) {
-        return Err(Failure::new(Code::Other, error));
-    }
-    match unmet(&findings.manifest) {
-        None => Ok(Code::Done),
-        Some(unmet) => Err(Failure::new(Code::Unmet, unmet)),
-    }
+    let said = Said {
+        json: arguments.json,
+        quiet: arguments.quiet,
+        verbose: arguments.verbose,
+    };
+    said.print(&campaign, &findings, out)?;
+    judged(&findings, out)
 }
 
 /// Tells how far a run is.

@@ -13,6 +13,7 @@ mod new;
 mod options;
 mod progress;
 mod robot;
+mod said;
 mod shards;
 mod submit;
 
@@ -31,6 +32,7 @@ use junit::{JunitFile, reported};
 use merge::{merge_command, status_command};
 use options::Overrides;
 use progress::ProgressLine;
+use said::{Said, judged};
 use shards::run_shard;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -40,9 +42,6 @@ use urts_mc::campaign::Campaign;
 use urts_mc::campaign::lints::cautions;
 use urts_mc::controllers::GainSet;
 use urts_mc::report::paper::{claim_dir, paper};
-use urts_mc::report::problems::shortcoming;
-use urts_mc::report::requirements::unmet;
-use urts_mc::report::terminal::Detail;
 use urts_mc::report::{Length, columns, columns_chapter, report, terminal, trace, tuning};
 use urts_mc::results::can_be_judged;
 use urts_mc::results::dictionary::DICTIONARY;
@@ -154,23 +153,14 @@ fn run_command(arguments: &RunArguments) -> Result<Code, Failure> {
         Err(failure) => return Err(reported(report, &campaign.name, failure)),
     };
     let written = report.map_or(Ok(()), |report| report.write(&findings.manifest, &out));
-    if arguments.json {
-        print_json(&findings)?;
-    } else if !arguments.quiet {
-        let detail = match arguments.verbose {
-            true => Detail::Everything,
-            false => Detail::Screen,
-        };
-        print(&terminal::findings(&campaign, &findings, &out, detail))?;
-    }
+    let said = Said {
+        json: arguments.json,
+        quiet: arguments.quiet,
+        verbose: arguments.verbose,
+    };
+    said.print(&campaign, &findings, &out)?;
     written?;
-    if let Some(error) = shortcoming(&findings.manifest, &out) {
-        return Err(Failure::new(Code::Other, error));
-    }
-    match unmet(&findings.manifest) {
-        None => Ok(Code::Done),
-        Some(unmet) => Err(Failure::new(Code::Unmet, unmet)),
-    }
+    judged(&findings, &out)
 }
 
 impl RunArguments {

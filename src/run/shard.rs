@@ -25,10 +25,13 @@ pub struct Shards {
 }
 
 impl Shard {
+    /// Shards that a run may have: more than any engine's array.
+    pub const MOST: u32 = 100_000;
+
     /// One of so many, if there is such a one.
     #[must_use]
     pub fn new(number: u32, of: u32) -> Option<Self> {
-        (1 <= number && number <= of).then_some(Self { number, of })
+        (1 <= number && number <= of && of <= Self::MOST).then_some(Self { number, of })
     }
 
     /// Which, from 1.
@@ -73,7 +76,7 @@ impl std::str::FromStr for AskedShard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        const FORM: &str = "write it as 3/8, from 1/8 to 8/8, or auto";
+        const FORM: &str = "write it as 3/8, from 1/8 to 8/8, or auto; there are at most 100000";
         let count = |text: &str| text.parse().ok().filter(|count: &u32| *count > 0);
         let form = || FORM.to_string();
         match text.split_once('/') {

@@ -114,7 +114,7 @@ impl Status {
         let campaign = plan.campaign()?;
         let parts = Parts::seen(dir, &campaign, plan);
         let begun = shards_of(dir);
-        let of = begun.map_or(0, |own| own.of);
+        let of = begun.map_or(0, |own| own.of.min(Shard::MOST));
         let all = (1..=of).filter_map(|number| Shard::new(number, of));
         let shards: Vec<ShardStatus> = all.map(|shard| of_shard(dir, &parts, shard)).collect();
         let process = parts.pilot();

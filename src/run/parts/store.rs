@@ -82,7 +82,10 @@ impl Parts {
         let mut parts = Self::none(out.path(), campaign, plan);
         match found {
             Found::Nothing => parts.remove()?,
-            Found::Ours => parts.find(),
+            Found::Ours => {
+                parts.clear();
+                parts.find();
+            }
         }
         parts.may_go_on(engine, resume)?;
         if let Err(error) = parts.begin(gains) {
@@ -132,6 +135,11 @@ impl Parts {
         Lock::holder_of(&self.out, LOCK)
     }
 
+    /// Whether these are the parts of one shard, beside which others are flown.
+    pub(crate) fn is_shard(&self) -> bool {
+        self.lock.is_some()
+    }
+
     /// Episodes of a part that are kept.
     pub(crate) fn kept_of(&self, index: u32) -> u32 {
         let kept = self.held.get(&index).map_or(0, Header::episodes);
@@ -167,22 +175,25 @@ impl Parts {
         self.dir.join(GAINS)
     }
 
+    /// Takes away what processes that were killed have left half written. Nobody else may be writing there.
+    fn clear(&self) {
+        let entries = fs::read_dir(&self.dir).into_iter().flatten().flatten();
+        for entry in entries.filter(|own| own.file_name().to_string_lossy().ends_with(".part")) {
+            // What stays takes room, and does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+
     /// Finds the parts that are there and whole.
     pub(super) fn find(&mut self) {
         let entries = fs::read_dir(&self.dir).into_iter().flatten().flatten();
         for entry in entries {
             let name = entry.file_name().to_string_lossy().into_owned();
             let number = name.strip_prefix(PART).and_then(|own| own.parse().ok());
-            let Some(index) = number.filter(|index| self.name(*index) == name) else {
-                // What a process that was killed left; other shards may be writing theirs.
-                if name.ends_with(".part") && self.lock.is_none() {
-                    let _ = fs::remove_file(entry.path());
-                }
+            let is_part = |index: &u32| self.name(*index) == name && self.own.contains(index);
+            let Some(index) = number.filter(is_part) else {
                 continue;
             };
-            if !self.own.contains(&index) {
-                continue;
-            }
             match self.verified(index) {
                 Ok((header, _)) => {
                     self.held.insert(index, header);
@@ -414,7 +425,7 @@ impl Parts {
     /// Takes the folder away if it holds no part: a process that flew nothing leaves nothing.
     pub(crate) fn leave(&mut self) {
         // What other shards have flown is theirs.
-        if self.held.is_empty() && self.lock.is_none() {
+        if self.held.is_empty() && !self.is_shard() {
             // What is left is written over by the next.
             let _ = self.remove();
         }

@@ -143,9 +143,10 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Shows the stopping rule what was there already, up to the next episode that is not.
+    /// Shows the stopping rule what was there already, up to the next episode that is not. A shard has not the episodes
+    /// before its own, so it flies all of them; where the run ends is found when it is made one.
     fn look_on(&mut self) -> Result<(), OutputError> {
-        if self.campaign.stop.is_none() {
+        if self.campaign.stop.is_none() || self.parts.is_shard() {
             return Ok(());
         }
         let size = self.parts.size();
@@ -167,7 +168,7 @@ impl<'a> Writer<'a> {
     /// Shows the stopping rule an episode, if it is the next.
     fn see(&mut self, first: u32, place: usize, groups: &[&[Vec<AgentOutcome>]]) {
         let episode = first + u32::try_from(place).unwrap_or(u32::MAX);
-        if episode != self.next {
+        if episode != self.next || self.parts.is_shard() {
             return;
         }
         self.next += 1;

@@ -60,7 +60,7 @@ pub(super) fn place() -> Place {
 }
 
 /// The tables and the gains of a run.
-fn tables(place: &Place, run: &str) -> Vec<(String, Vec<u8>)> {
+pub(super) fn tables(place: &Place, run: &str) -> Vec<(String, Vec<u8>)> {
     let entries = std::fs::read_dir(place.path(run)).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let is_table = |name: &String| {

@@ -1,7 +1,6 @@
 //! A run by several processes: shards, what is known of them while they fly, and the one run that they make.
 
-use super::parts::{place, until};
-use std::path::Path;
+use super::parts::{place, tables, until};
 use urts_mc::run::shard::{AskedShard, Shard, Shards, shard_of};
 
 /// The command of a run of five parts.
@@ -18,30 +17,11 @@ pub(super) fn run<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     begin.into_iter().chain(more.iter().copied()).collect()
 }
 
-/// Every file of a run that says nothing of when and how fast it was flown.
-pub(super) fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
-    let entries = std::fs::read_dir(dir).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let is_table = |name: &String| {
-        [".parquet", ".csv", "gains.json"]
-            .iter()
-            .any(|end| name.ends_with(end))
-    };
-    let mut names: Vec<String> = names.filter(is_table).collect();
-    names.sort();
-    assert!(names.len() > 10, "{names:?}");
-    let of = |name: String| {
-        let bytes = std::fs::read(dir.join(&name)).unwrap();
-        (name, bytes)
-    };
-    names.into_iter().map(of).collect()
-}
-
 #[test]
 fn shards_in_any_order_and_of_several_directories_make_the_run_of_one_process() {
     let place = place();
     assert_eq!(place.program(&run("whole", &[])).code, 0);
-    let whole = files(&place.path("whole"));
+    let whole = tables(&place, "whole");
     for shard in ["3/3", "1/3"] {
         let ended = place.program(&run("one", &["--shard", shard]));
         assert_eq!((ended.code, ended.stderr.as_str()), (0, ""));
@@ -74,7 +54,7 @@ fn shards_in_any_order_and_of_several_directories_make_the_run_of_one_process() 
     let merge = ["merge", "one", "two", "three", "--out", "all", "--quiet"];
     let ended = place.program(&merge);
     assert_eq!((ended.code, ended.stderr.as_str()), (0, ""));
-    assert!(files(&place.path("all")) == whole);
+    assert!(tables(&place, "all") == whole);
     // Into the first, which then has all.
     let ended = place.program(&["merge", "one", "two"]);
     assert_eq!(ended.code, 0, "{}", ended.stderr);
@@ -83,11 +63,11 @@ fn shards_in_any_order_and_of_several_directories_make_the_run_of_one_process() 
         "{}",
         ended.stdout
     );
-    assert!(files(&place.path("one")) == whole);
+    assert!(tables(&place, "one") == whole);
     assert!(!place.path("one/.urts-mc-parts").exists());
     // A process alone goes on with what shards have flown.
     assert_eq!(place.program(&run("two", &[])).code, 0);
-    assert!(files(&place.path("two")) == whole);
+    assert!(tables(&place, "two") == whole);
 }
 
 #[test]
@@ -351,5 +331,5 @@ fn kubernetes_tasks_that_are_simulated_make_the_run_of_one_process() {
     let ended = place.program(&merge[1..]);
     assert_eq!((ended.code, ended.stderr.as_str()), (0, ""));
     assert_eq!(place.program(&run("whole", &[])).code, 0);
-    assert!(files(&place.path("out")) == files(&place.path("whole")));
+    assert!(tables(&place, "out") == tables(&place, "whole"));
 }

@@ -1,8 +1,8 @@
 //! Shards on a real Slurm, which `tests/slurm` starts on this machine.
 
 use super::Place;
-use super::parts::place;
-use super::shards::{files, run};
+use super::parts::{place, tables};
+use super::shards::run;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -131,7 +131,7 @@ fn an_array_of_shards_of_which_one_is_killed_and_submitted_again_makes_the_run_o
         "{}",
         logs(place.0.path())
     );
-    assert!(files(&place.path("out")) == files(&place.path("whole")));
+    assert!(tables(&place, "out") == tables(&place, "whole"));
 }
 
 #[test]
@@ -179,5 +179,5 @@ fn a_task_that_runs_out_of_time_is_queued_again_and_goes_on() {
             .code,
         0
     );
-    assert!(files(&place.path("out")) == files(&place.path("whole")));
+    assert!(tables(&place, "out") == tables(&place, "whole"));
 }
