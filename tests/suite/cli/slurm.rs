@@ -31,7 +31,7 @@ fn slurm(place: &Place, words: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Waits until no job of these is queued or runs; what was queued again need not wait.
+/// Waits until no job of these is queued or runs.
 fn ended(place: &Place, jobs: &str) {
     let begin = Instant::now();
     loop {
@@ -48,13 +48,6 @@ fn ended(place: &Place, jobs: &str) {
         );
         if left.trim().is_empty() {
             return;
-        }
-        for line in left.lines().filter(|line| line.contains("BeginTime")) {
-            let job = line.split(' ').next().unwrap();
-            let job = format!("JobId={job}");
-            let _ = Command::new("scontrol")
-                .args(["update", &job, "StartTime=now"])
-                .status();
         }
         let long = begin.elapsed() > Duration::from_secs(240);
         assert!(!long, "still there:\n{left}{}", logs(place.0.path()));
