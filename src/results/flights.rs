@@ -3,7 +3,6 @@
 use super::fairness::Terms;
 use super::numbers::of_episodes;
 use super::scores::Scores;
-use super::sensitivity::order;
 use super::table::Table;
 use crate::campaign::{Campaign, EpisodeNumber};
 use crate::util::format::digits;
@@ -61,8 +60,8 @@ pub struct Pace {
 /// first channel group.
 #[must_use]
 pub fn pick(campaign: &Campaign, scores: &Scores) -> Vec<PickedFlight> {
-    let order = order(campaign, scores, 0);
-    let Some(worst) = order.first() else {
+    let worst = scores.worst.first().and_then(|own| own.first());
+    let Some(worst) = worst.map(|own| own.episode) else {
         return Vec::new();
     };
     let groups = campaign.channel_groups();
@@ -79,8 +78,8 @@ pub fn pick(campaign: &Campaign, scores: &Scores) -> Vec<PickedFlight> {
     };
     let mut picked: Vec<PickedFlight> =
         median.map(|own| flight(MEDIAN, *own)).into_iter().collect();
-    if Some(worst) != median {
-        picked.push(flight(WORST, *worst));
+    if Some(&worst) != median {
+        picked.push(flight(WORST, worst));
     }
     picked
 }

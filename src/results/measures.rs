@@ -2,8 +2,8 @@
 
 use super::numbers::{of_episodes, sorted};
 use super::paired::Measured;
-use super::scores::{GroupScores, Scores, Status};
-use crate::campaign::{AgentGroup, Campaign, LoopNumber, Measure, MeasuredChannels};
+use super::scores::{Scores, Status};
+use crate::campaign::{Campaign, LoopNumber, Measure, MeasuredChannels};
 use crate::controllers::GainSet;
 use crate::random::Method;
 use crate::statistics::{quantile, quantile_interval, wilson};
@@ -93,14 +93,9 @@ pub(super) fn failed_by(
 ) -> Vec<bool> {
     let end = campaign.time.steps;
     let of_episode = |episode: usize| {
-        let of_group = |(group, own): (&AgentGroup, &GroupScores)| {
-            let agents = episode * group.team..(episode + 1) * group.team;
-            let steps = own.failed_step[controller][agents].iter().flatten();
-            let at_end = own.status[controller][episode] != Status::Ok;
-            steps.copied().chain(at_end.then_some(end)).min()
-        };
-        let groups = campaign.groups().iter().zip(&scores.groups);
-        let first = groups.filter_map(of_group).min();
+        let failed = scores.failed_step[controller][episode];
+        let at_end = scores.status[controller][episode] != Status::Ok;
+        let first = failed.into_iter().chain(at_end.then_some(end)).min();
         first.is_some_and(|step| campaign.time.shown_s(step) <= at_s)
     };
     (0..scores.episodes()).map(of_episode).collect()

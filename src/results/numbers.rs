@@ -1,7 +1,7 @@
 //! Numbers of episodes: one of each episode, of all agents on some channels.
 
-use super::scores::{ChannelGroupScores, Scores, Status};
-use super::team::{Layout, team_rmse};
+use super::scores::{ChannelGroupScores, Scores};
+use super::team::Errors;
 use crate::campaign::{Campaign, ChannelsOfCampaign, EpisodeNumber};
 
 /// A number of each episode under a controller: infinite where an agent diverged, not a number where it does not apply.
@@ -12,37 +12,16 @@ pub(super) fn of_episodes(
     number: EpisodeNumber,
     of: &ChannelsOfCampaign,
 ) -> Vec<f64> {
-    let layout = Layout::new(campaign, of);
-    let own = layout.scores(scores);
-    let other = |pick: fn(&ChannelGroupScores) -> f64| {
-        let of_agents = campaign.groups()[of.group].channel_groups().len();
-        let all = own.channel_groups[controller].iter();
-        all.skip(of.place).step_by(of_agents).map(pick).collect()
+    let pick: fn(&ChannelGroupScores) -> f64 = match number {
+        EpisodeNumber::Rmse => |own| own.rmse,
+        EpisodeNumber::MaxAbs => |own| own.max_abs,
+        EpisodeNumber::PeakCommand => |own| own.peak,
+        EpisodeNumber::Effort => |own| own.effort,
+        EpisodeNumber::SaturatedShare => |own| own.saturated,
+        EpisodeNumber::Settling => |own| own.settling_s,
+        EpisodeNumber::Recovery => |own| own.recovery_s,
     };
-    match number {
-        EpisodeNumber::Rmse => team_rmse(scores, controller, &layout),
-        EpisodeNumber::MaxAbs => {
-            let of_episode = |episode: usize| match own.status[controller][episode] {
-                Status::Diverged => f64::INFINITY,
-                _ => layout
-                    .of(&own.max_abs[controller], episode)
-                    .fold(0.0, f64::max),
-            };
-            (0..scores.episodes()).map(of_episode).collect()
-        }
-        EpisodeNumber::PeakCommand => other(|own| own.peak),
-        EpisodeNumber::Effort => other(|own| own.effort),
-        EpisodeNumber::SaturatedShare => {
-            // It has no share where an agent diverged, which is worse than any.
-            let finite = |own: &ChannelGroupScores| match own.saturated.is_nan() {
-                true => f64::INFINITY,
-                false => own.saturated,
-            };
-            other(finite)
-        }
-        EpisodeNumber::Settling => other(|own| own.settling_s),
-        EpisodeNumber::Recovery => other(|own| own.recovery_s),
-    }
+    Errors::on(campaign, of).of_channel_group(scores, controller, pick)
 }
 
 /// Those of some episodes to which it applies, smallest first.

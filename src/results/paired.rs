@@ -3,7 +3,7 @@
 use super::replicates::{Replicated, over_replicates};
 use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::team::{Layout, team_rmse};
+use super::team::Errors;
 use crate::campaign::Campaign;
 use crate::random::Method;
 use crate::statistics::{
@@ -142,22 +142,22 @@ fn compare_pair(
     parts: &[Subset],
 ) -> Vec<PairedComparison> {
     let groups = campaign.channel_groups().into_iter();
-    let groups = groups.map(|of| ("group", of.name.clone(), Layout::new(campaign, &of)));
+    let groups = groups.map(|of| ("group", of.name.clone(), Errors::on(campaign, &of)));
     let channels = campaign.groups().iter().enumerate();
     let channels = channels.flat_map(|(index, group)| {
         let names = group.channels().iter().enumerate();
         names.map(move |(c, name)| {
-            let layout = Layout::of_channels(campaign, index, c..c + 1);
-            ("channel", Arc::from(group.titled(name)), layout)
+            let errors = Errors::on_channel(campaign, index, c);
+            ("channel", Arc::from(group.titled(name)), errors)
         })
     });
     let series: Vec<Series<'_>> = groups
         .chain(channels)
-        .map(|(scope, name, layout)| Series {
+        .map(|(scope, name, errors)| Series {
             scope,
             name,
-            log_ratios: log_ratios(campaign, scores, [a, b], &layout),
-            status: &layout.scores(scores).status,
+            log_ratios: log_ratios(campaign, scores, [a, b], &errors),
+            status: &errors.scores(scores).status,
         })
         .collect();
     let paired = campaign.allows(Method::Paired);
@@ -286,10 +286,10 @@ pub(super) fn log_ratios(
     campaign: &Campaign,
     scores: &Scores,
     [a, b]: [usize; 2],
-    layout: &Layout,
+    errors: &Errors,
 ) -> Vec<f64> {
-    let smallest = layout.group(campaign).verdict.smallest_error;
-    let [of_a, of_b] = [a, b].map(|controller| team_rmse(scores, controller, layout));
+    let smallest = errors.group(campaign).verdict.smallest_error;
+    let [of_a, of_b] = [a, b].map(|controller| errors.rmse(scores, controller));
     let of_pair = |(of_a, of_b): (f64, f64)| match of_a.is_infinite() && of_b.is_infinite() {
         true => 0.0,
         false => (of_b.max(smallest) / of_a.max(smallest)).ln(),

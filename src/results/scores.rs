@@ -1,9 +1,12 @@
 //! How episodes ended, and the numbers that the statistics of a run read.
 
-use crate::campaign::AgentGroup;
+use crate::agent::ChannelGroup;
+use crate::campaign::{AgentGroup, Campaign};
 use crate::model::episode::AgentOutcome;
 use crate::model::metric::ChannelOutcome;
+use crate::statistics::rms;
 use serde::Serialize;
+use std::cmp::Ordering;
 
 /// How an agent or an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -45,18 +48,26 @@ pub fn status(group: &AgentGroup, outcome: &AgentOutcome) -> Status {
     }
 }
 
-/// The numbers that the statistics of a run read. Episodes are in order; so are groups, controllers, agents and
-/// channels.
+/// Worst episodes that are remembered of each controller.
+const WORST: usize = 10;
+
+/// The numbers that the statistics of a run read: of a team's episode, not of each agent. Episodes are in order; so are
+/// groups, controllers and channels.
 #[derive(Debug, Clone, Default)]
 pub struct Scores {
     /// Worst status of all agents, `[controller][episode]`.
     pub status: Vec<Vec<Status>>,
+    /// Step in which the first agent broke max_error or left the numbers, `[controller][episode]`.
+    pub failed_step: Vec<Vec<Option<u32>>>,
+    /// Of each controller the worst episodes, the worst first.
+    pub(super) worst: Vec<Vec<BadEpisode>>,
     /// Of each group of agents.
     pub groups: Vec<GroupScores>,
     /// Whether an agent of the episode has the fault, `[fault][episode]`; faults are numbered through all groups.
     pub fault_occurs: Vec<Vec<bool>>,
-    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]).
-    pub conditions: Vec<(String, Vec<Option<f64>>)>,
+    /// What each episode met: the name of a condition, and its size by episode ([`crate::draw::quantities`]); not a
+    /// number where it does not apply.
+    pub conditions: Vec<(String, Vec<f64>)>,
 }
 
 /// The numbers of one group of agents.
@@ -64,20 +75,20 @@ pub struct Scores {
 pub struct GroupScores {
     /// Worst status of its agents, `[controller][episode]`.
     pub status: Vec<Vec<Status>>,
-    /// RMS error, `[controller]` then episode, agent, channel in one list.
+    /// RMS error over the agents, `[controller]` then episode, channel in one list; infinite where an agent diverged.
     pub rmse: Vec<Vec<f64>>,
-    /// Largest error, laid out like `rmse`.
-    pub max_abs: Vec<Vec<f64>>,
-    /// Step in which an agent broke max_error or left the numbers, `[controller]` then episode, agent in one list.
-    pub failed_step: Vec<Vec<Option<u32>>>,
-    /// What else they showed, `[controller]` then episode, channel group in one list.
+    /// What they showed on channel groups, `[controller]` then episode, channel group in one list.
     pub channel_groups: Vec<Vec<ChannelGroupScores>>,
 }
 
-/// What a group of agents showed on a channel group of an episode, beside its errors.
+/// What a group of agents showed on a channel group of an episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelGroupScores {
-    /// The largest |u| of any agent and channel, N or N m; infinite, as the effort is, where an agent diverged.
+    /// RMS error over agents and channels; infinite, as all errors and the effort are, where an agent diverged.
+    pub rmse: f64,
+    /// The largest |e| of any agent and channel.
+    pub max_abs: f64,
+    /// The largest |u| of any agent and channel, N or N m.
     pub peak: f64,
     /// The integral of u^2, in the mean over agents and channels.
     pub effort: f64,
@@ -90,22 +101,42 @@ pub struct ChannelGroupScores {
     pub recovery_s: f64,
 }
 
-/// What one channel of an agent showed, beside its error.
+/// How an agent fared in an episode.
+#[derive(Debug, Clone)]
+pub struct AgentScores {
+    /// How it ended.
+    pub status: Status,
+    /// Step in which it broke max_error or left the numbers.
+    pub failed_step: Option<u32>,
+    /// What each of its channels showed.
+    pub channels: Vec<ChannelScores>,
+}
+
+/// What one channel of an agent showed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ChannelScores {
-    pub(crate) peak: f64,
-    pub(crate) effort: f64,
-    pub(crate) saturated: f64,
-    /// Infinite where it did not settle.
-    pub(crate) settling_s: f64,
-    /// Infinite where it did not settle again; none where no fault began.
-    pub(crate) recovery_s: Option<f64>,
+pub struct ChannelScores {
+    /// RMS error.
+    pub rmse: f64,
+    /// The largest |e|.
+    pub max_abs: f64,
+    /// The largest |u|.
+    pub peak: f64,
+    /// The integral of u^2.
+    pub effort: f64,
+    /// Share of the steps at a limit.
+    pub saturated: f64,
+    /// When it was settled, s; infinite where it did not.
+    pub settling_s: f64,
+    /// How long after the first fault it was settled again, s; infinite where it was not, none where no fault began.
+    pub recovery_s: Option<f64>,
 }
 
 impl ChannelGroupScores {
     /// Of all channels of all agents.
-    pub(crate) fn of(channels: impl Iterator<Item = ChannelScores>) -> Self {
+    fn of<'a>(channels: impl Iterator<Item = &'a ChannelScores> + Clone) -> Self {
         let mut all = Self {
+            rmse: rms(channels.clone().map(|own| own.rmse)),
+            max_abs: 0.0,
             peak: 0.0,
             effort: 0.0,
             saturated: 0.0,
@@ -114,6 +145,7 @@ impl ChannelGroupScores {
         };
         let mut count = 0.0;
         for own in channels {
+            all.max_abs = all.max_abs.max(own.max_abs);
             all.peak = all.peak.max(own.peak);
             all.effort += own.effort;
             all.saturated = all.saturated.max(own.saturated);
@@ -127,7 +159,9 @@ impl ChannelGroupScores {
     }
 
     /// Where an agent diverged.
-    pub(crate) const DIVERGED: Self = Self {
+    const DIVERGED: Self = Self {
+        rmse: f64::INFINITY,
+        max_abs: f64::INFINITY,
         peak: f64::INFINITY,
         effort: f64::INFINITY,
         saturated: f64::NAN,
@@ -137,43 +171,227 @@ impl ChannelGroupScores {
 }
 
 impl Scores {
+    /// Of a campaign, nothing yet; of its conditions and faults not even the names.
+    #[must_use]
+    pub fn new(campaign: &Campaign) -> Self {
+        let controllers = campaign.controllers.len();
+        let group = GroupScores {
+            status: vec![Vec::new(); controllers],
+            rmse: vec![Vec::new(); controllers],
+            channel_groups: vec![Vec::new(); controllers],
+        };
+        Self {
+            status: vec![Vec::new(); controllers],
+            failed_step: vec![Vec::new(); controllers],
+            worst: vec![Vec::new(); controllers],
+            groups: vec![group; campaign.groups().len()],
+            fault_occurs: Vec::new(),
+            conditions: Vec::new(),
+        }
+    }
+
     /// Episodes so far.
     #[must_use]
     pub fn episodes(&self) -> usize {
         self.status.first().map_or(0, Vec::len)
     }
-}
 
-impl GroupScores {
-    /// Of so many controllers, nothing yet.
-    pub(crate) fn new(controllers: usize) -> Self {
-        Self {
-            status: vec![Vec::new(); controllers],
-            rmse: vec![Vec::new(); controllers],
-            max_abs: vec![Vec::new(); controllers],
-            failed_step: vec![Vec::new(); controllers],
-            channel_groups: vec![Vec::new(); controllers],
+    /// Adds how the agents of each group fared under a controller in the next episode; how the episode ended.
+    pub fn add(
+        &mut self,
+        campaign: &Campaign,
+        controller: usize,
+        groups: &[Vec<AgentScores>],
+    ) -> Status {
+        let agents = || groups.iter().flatten();
+        let status = agents().map(|agent| agent.status).max();
+        let status = status.unwrap_or(Status::Ok);
+        let episode = self.status[controller].len();
+        let bad = BadEpisode::new(campaign, (episode, status), groups);
+        let worst = &mut self.worst[controller];
+        let place = worst.partition_point(|own| own.order(&bad) == Ordering::Less);
+        worst.insert(place, bad);
+        worst.truncate(WORST);
+        self.status[controller].push(status);
+        let failed_step = agents().filter_map(|agent| agent.failed_step).min();
+        self.failed_step[controller].push(failed_step);
+        let all = campaign.groups().iter().zip(groups).zip(&mut self.groups);
+        for ((group, agents), scores) in all {
+            scores.add(group, controller, agents);
+        }
+        status
+    }
+
+    /// Adds the controllers of other scores of the same episodes.
+    pub(crate) fn extend(&mut self, other: Self) {
+        self.status.extend(other.status);
+        self.failed_step.extend(other.failed_step);
+        self.worst.extend(other.worst);
+        for (own, other) in self.groups.iter_mut().zip(other.groups) {
+            own.status.extend(other.status);
+            own.rmse.extend(other.rmse);
+            own.channel_groups.extend(other.channel_groups);
         }
     }
 
-    /// Whether these are an episode's numbers, to the last digit: its agents' errors under a controller. Numbers that
-    /// are none are all alike.
-    #[must_use]
-    pub fn holds(&self, controller: usize, episode: u32, agents: &[AgentOutcome]) -> bool {
-        let stride = agents
-            .iter()
-            .map(|agent| agent.channels.len())
-            .sum::<usize>();
-        let rows = episode as usize * stride..(episode as usize + 1) * stride;
-        let same = |kept: &[f64], pick: fn(&ChannelOutcome) -> f64| {
-            let again = agents.iter().flat_map(|agent| &agent.channels).map(pick);
-            let kept = kept.get(rows.clone()).unwrap_or_default();
-            kept.len() == stride
-                && kept.iter().zip(again).all(|(kept, again)| {
-                    kept.to_bits() == again.to_bits() || kept.is_nan() && again.is_nan()
-                })
+    /// Whether an episode ended the same under two controllers, to the last digit of every error of the team.
+    pub(crate) fn alike(&self, [a, b]: [usize; 2], episode: usize) -> bool {
+        let of_group = |own: &GroupScores| own.errors(a, episode).eq(own.errors(b, episode));
+        self.status[a][episode] == self.status[b][episode] && self.groups.iter().all(of_group)
+    }
+}
+
+impl GroupScores {
+    fn add(&mut self, group: &AgentGroup, controller: usize, agents: &[AgentScores]) {
+        let status = agents.iter().map(|agent| agent.status).max();
+        let status = status.unwrap_or(Status::Ok);
+        self.status[controller].push(status);
+        let diverged = status == Status::Diverged;
+        let of_channel = |channel: usize| match diverged {
+            true => f64::INFINITY,
+            false => rms(agents.iter().map(|agent| agent.channels[channel].rmse)),
         };
-        same(&self.rmse[controller], |metrics| metrics.rmse)
-            && same(&self.max_abs[controller], |metrics| metrics.max_abs)
+        self.rmse[controller].extend((0..group.channels().len()).map(of_channel));
+        let of_channels = |own: ChannelGroup| match diverged {
+            true => ChannelGroupScores::DIVERGED,
+            false => {
+                let all = agents.iter();
+                ChannelGroupScores::of(all.flat_map(|agent| &agent.channels[own.channels.clone()]))
+            }
+        };
+        let of_channels = group.channel_groups().into_iter().map(of_channels);
+        self.channel_groups[controller].extend(of_channels);
+    }
+
+    /// How an episode ended and all its errors, as bits; numbers that are none are all alike.
+    fn errors(&self, controller: usize, episode: usize) -> impl Iterator<Item = u64> + '_ {
+        let episodes = self.status[controller].len().max(1);
+        let status = self.status[controller].get(episode);
+        let of_channels = &self.rmse[controller];
+        let of_groups = &self.channel_groups[controller];
+        let [channels, groups] = [of_channels.len(), of_groups.len()].map(|len| len / episodes);
+        let rows = |stride: usize| episode * stride..(episode + 1) * stride;
+        let of_channels = of_channels.get(rows(channels)).unwrap_or_default();
+        let of_groups = of_groups.get(rows(groups)).unwrap_or_default();
+        let of_groups = of_groups.iter().flat_map(|own| [own.rmse, own.max_abs]);
+        let numbers = of_channels.iter().copied().chain(of_groups);
+        let bits = numbers.map(|value| match value.is_nan() {
+            true => f64::NAN.to_bits(),
+            false => value.to_bits(),
+        });
+        status.map(|own| *own as u64).into_iter().chain(bits)
+    }
+
+    /// Whether these are an episode's errors under a controller, to the last digit, of which the outcomes of its agents
+    /// are given.
+    #[must_use]
+    pub fn holds(
+        &self,
+        group: &AgentGroup,
+        controller: usize,
+        episode: u32,
+        agents: &[AgentOutcome],
+    ) -> bool {
+        let agents = agents.iter().map(|outcome| AgentScores {
+            status: status(group, outcome),
+            failed_step: outcome.failed_step,
+            channels: outcome.channels.iter().map(ChannelScores::errors).collect(),
+        });
+        let agents: Vec<AgentScores> = agents.collect();
+        let mut again = Self {
+            status: vec![Vec::new()],
+            rmse: vec![Vec::new()],
+            channel_groups: vec![Vec::new()],
+        };
+        again.add(group, 0, &agents);
+        let kept = self.errors(controller, episode as usize);
+        kept.eq(again.errors(0, 0))
+    }
+}
+
+impl ChannelScores {
+    /// Of an outcome, the errors alone.
+    fn errors(outcome: &ChannelOutcome) -> Self {
+        Self {
+            rmse: outcome.rmse,
+            max_abs: outcome.max_abs,
+            peak: f64::NAN,
+            effort: f64::NAN,
+            saturated: f64::NAN,
+            settling_s: f64::NAN,
+            recovery_s: None,
+        }
+    }
+}
+
+/// How bad an episode was under a controller.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BadEpisode {
+    pub(super) status: Status,
+    /// Largest |e| over its limit; infinite after a divergence.
+    pub(super) excess: f64,
+    /// Step of the first failure; the last possible one where no single step failed.
+    pub(super) failed_step: u32,
+    pub(super) episode: usize,
+    pub(super) agent: usize,
+    pub(super) channel: usize,
+}
+
+impl BadEpisode {
+    fn new(
+        campaign: &Campaign,
+        (episode, status): (usize, Status),
+        groups: &[Vec<AgentScores>],
+    ) -> Self {
+        let agents: Vec<&AgentScores> = groups.iter().flatten().collect();
+        let step = |agent: usize| {
+            let own = agents.get(agent).and_then(|own| own.failed_step);
+            own.unwrap_or(u32::MAX)
+        };
+        let all = 0..agents.len();
+        let first = all.clone().min_by_key(|&agent| step(agent)).unwrap_or(0);
+        // If an episode diverges, only its first failing agent counts: it may have pulled the others along.
+        let looked_at = match status {
+            Status::Diverged => first..first + 1,
+            Status::Ok | Status::Exceeded => all,
+        };
+        let of_agent = |agent: usize| {
+            let limits = &campaign.member(agent).0.verdict.max_error;
+            let channels = limits.iter().zip(&agents[agent].channels).enumerate();
+            channels.map(move |(channel, (limit, own))| {
+                let limit = if limit.is_finite() { *limit } else { 1.0 };
+                let excess = match own.max_abs / limit {
+                    // What left the numbers is as large as can be.
+                    excess if excess.is_nan() => f64::INFINITY,
+                    excess => excess,
+                };
+                (excess, agent, channel)
+            })
+        };
+        let largest = looked_at
+            .flat_map(of_agent)
+            .reduce(|a, b| if b.0 > a.0 { b } else { a });
+        let (excess, agent, channel) = largest.unwrap_or_default();
+        Self {
+            status,
+            excess,
+            failed_step: step(first),
+            episode,
+            agent,
+            channel,
+        }
+    }
+
+    /// Worst first: by how they ended, then by the largest error over its limit; of those that diverged, the earlier
+    /// the worse.
+    fn order(&self, other: &Self) -> Ordering {
+        let by_size = match self.status {
+            Status::Diverged => self.failed_step.cmp(&other.failed_step),
+            Status::Ok | Status::Exceeded => other.excess.total_cmp(&self.excess),
+        };
+        let by_status = other.status.cmp(&self.status);
+        by_status
+            .then(by_size)
+            .then(self.episode.cmp(&other.episode))
     }
 }

@@ -9,7 +9,7 @@
 use super::scores::Scores;
 use super::strata::{Subset, parts};
 use super::summary::FailureRate;
-use super::team::{Layout, team_rmse};
+use super::team::Errors;
 use crate::campaign::{Campaign, ChannelsOfCampaign, StratumFaults};
 use crate::statistics::{
     Estimate, LEVEL, independent_difference, quantile, quantile_interval, wilson,
@@ -115,8 +115,7 @@ fn screen_controller(
     let errors: Vec<Vec<Vec<f64>>> = groups
         .iter()
         .map(|of_group| {
-            let layout = Layout::new(campaign, of_group);
-            let rmse = team_rmse(scores, controller, &layout);
+            let rmse = Errors::on(campaign, of_group).rmse(scores, controller);
             let of_part = |(part, _): &(&Subset, bool)| {
                 let mut logs: Vec<f64> = part.episodes.iter().map(|&k| rmse[k].ln()).collect();
                 logs.sort_unstable_by(f64::total_cmp);

@@ -1,15 +1,14 @@
 //! Which condition breaks it: the effect of what was drawn on how the controllers fared, and the worst episodes.
 
 use super::paired::{Measured, log_ratios};
-use super::scores::{Scores, Status};
+use super::scores::{BadEpisode, Scores, Status};
 use super::table::Table;
-use super::team::{Layout, team_rmse};
-use crate::campaign::{AgentGroup, Campaign, Fault, Stratum, StratumFaults};
+use super::team::Errors;
+use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign, Fault, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;
 use crate::random::Method;
 use crate::statistics::{Effect, LEVEL, Outcome, Permutations, Ranked, effects, holm};
 use serde::{Serialize, Serializer};
-use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// Fewest random permutations of a test.
@@ -20,8 +19,6 @@ const PERMUTATIONS: u32 = 4_000;
 const PER_CONDITION: usize = 120;
 /// Episodes up to which all of them are permuted: more would take hours, and change nothing.
 const SHUFFLED: usize = 1 << 14;
-/// Worst episodes that are listed of each controller.
-const WORST: usize = 10;
 
 /// What a condition may have an effect on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -123,7 +120,10 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
         },
         shuffled: SHUFFLED,
     };
-    let of_target = |(target, outcome): (Target, Outcome)| {
+    let of_target = |(target, pair, errors): (Target, [usize; 2], Option<Errors>)| {
+        let Some(outcome) = outcome(campaign, scores, pair, errors.as_ref()) else {
+            return Vec::new();
+        };
         let effects = effects(&columns, &outcome, LEVEL, permutations);
         let found: Vec<(&&String, Effect)> = names
             .iter()
@@ -154,20 +154,13 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
         ranked.sort_by(|a, b| size(b).total_cmp(&size(a)));
         ranked
     };
-    targets(campaign, scores)
-        .into_iter()
-        .flat_map(of_target)
-        .collect()
+    targets(campaign).into_iter().flat_map(of_target).collect()
 }
 
-/// A condition where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and
+/// A condition, not a number where it does not apply, where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and
 /// what goes with the number (the first onset, the mean over more channels) would be taken for what goes with the
 /// stratum: where some strata draw their faults, faults are ranked in those only.
-pub(crate) fn by_chance(
-    campaign: &Campaign,
-    condition: &str,
-    values: &[Option<f64>],
-) -> Vec<Option<f64>> {
+pub(crate) fn by_chance(campaign: &Campaign, condition: &str, values: &[f64]) -> Vec<Option<f64>> {
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::ByProbability;
     let strata = &campaign.strata;
     let has_background = |fault| {
@@ -183,177 +176,103 @@ pub(crate) fn by_chance(
     let kept = |episode| !only_drawn || strata.of(episode).is_some_and(draws);
     (0..)
         .zip(values)
-        .map(|(episode, value)| value.filter(|_| kept(episode)))
+        .map(|(episode, value)| Some(*value).filter(|value| !value.is_nan() && kept(episode)))
         .collect()
 }
 
-fn targets(campaign: &Campaign, scores: &Scores) -> Vec<(Target, Outcome)> {
-    let mut targets = Vec::new();
+/// What the conditions may have an effect on.
+fn targets(campaign: &Campaign) -> Vec<(Target, [usize; 2], Option<Errors>)> {
     let controllers = &campaign.controllers;
     let groups = campaign.channel_groups();
-    for (index, name) in controllers.iter().enumerate() {
-        let target = |kind, group| Target {
+    let target = |kind, a: usize, b: Option<usize>, group: Option<&ChannelsOfCampaign>| {
+        let target = Target {
             kind,
-            controller: name.clone(),
-            against: None,
-            group,
+            controller: controllers[a].clone(),
+            against: b.map(|b| controllers[b].clone()),
+            group: group.map(|group| group.name.clone()),
         };
-        let failed = scores.status[index]
-            .iter()
-            .map(|status| *status != Status::Ok);
-        let failed: Vec<bool> = failed.collect();
-        let outcome = Outcome::Failure(Ranked::of_flags(&failed));
-        targets.push((target("failure", None), outcome));
-        for of_group in &groups {
-            let rmse = team_rmse(scores, index, &Layout::new(campaign, of_group));
-            if let Some(ranked) = Ranked::of_all(&rmse) {
-                let target = target("rmse", Some(of_group.name.clone()));
-                targets.push((target, Outcome::Metric(ranked)));
-            }
-        }
+        let errors = group.map(|group| Errors::on(campaign, group));
+        (target, [a, b.unwrap_or(a)], errors)
+    };
+    let mut targets = Vec::new();
+    for a in 0..controllers.len() {
+        targets.push(target("failure", a, None, None));
+        let of_groups = groups.iter();
+        targets.extend(of_groups.map(|group| target("rmse", a, None, Some(group))));
     }
     for a in 0..controllers.len() {
         for b in a + 1..controllers.len() {
-            for of_group in &groups {
-                let layout = Layout::new(campaign, of_group);
-                if let Some(ranked) = Ranked::of_all(&log_ratios(campaign, scores, [a, b], &layout))
-                {
-                    let target = Target {
-                        kind: "log_ratio",
-                        controller: controllers[a].clone(),
-                        against: Some(controllers[b].clone()),
-                        group: Some(of_group.name.clone()),
-                    };
-                    targets.push((target, Outcome::Metric(ranked)));
-                }
-            }
+            let of_groups = groups.iter();
+            targets.extend(of_groups.map(|group| target("log_ratio", a, Some(b), Some(group))));
         }
     }
     targets
+}
+
+/// How controllers fared by a target, one of them or a pair, on some channels; none of numbers that are none.
+fn outcome(
+    campaign: &Campaign,
+    scores: &Scores,
+    [a, b]: [usize; 2],
+    errors: Option<&Errors>,
+) -> Option<Outcome> {
+    let Some(errors) = errors else {
+        let failed = scores.status[a].iter().map(|own| *own != Status::Ok);
+        let failed: Vec<bool> = failed.collect();
+        return Some(Outcome::Failure(Ranked::of_flags(&failed)));
+    };
+    let values = match a == b {
+        true => errors.rmse(scores, a),
+        false => log_ratios(campaign, scores, [a, b], errors),
+    };
+    Ranked::of_all(&values).map(Outcome::Metric)
 }
 
 /// The worst episodes of each controller, worst first: by how they ended, then by the largest error over its limit; of
 /// those that diverged, the earlier the worse.
 #[must_use]
 pub fn worst(campaign: &Campaign, scores: &Scores) -> Vec<WorstEpisode> {
-    let of_controller = |(index, name): (usize, &String)| {
-        let episodes = 0..scores.episodes();
-        let mut bad: Vec<Bad> = episodes
-            .map(|k| Bad::of(campaign, scores, index, k))
-            .collect();
-        bad.sort_by(Bad::order);
-        let ranked = bad.into_iter().take(WORST).enumerate();
-        let named = ranked.map(|(rank, bad)| bad.named(campaign, scores, name, rank + 1));
+    let of_controller = |(name, bad): (&String, &Vec<BadEpisode>)| {
+        let named = bad.iter().enumerate();
+        let named =
+            named.map(|(rank, bad)| WorstEpisode::new(campaign, scores, name, rank + 1, bad));
         named.collect::<Vec<_>>()
     };
-    let controllers = campaign.controllers.iter().enumerate();
+    let controllers = campaign.controllers.iter().zip(&scores.worst);
     controllers.flat_map(of_controller).collect()
 }
 
-/// All episodes under a controller, the worst first.
-pub(super) fn order(campaign: &Campaign, scores: &Scores, controller: usize) -> Vec<usize> {
-    let of_episode = |episode| Bad::of(campaign, scores, controller, episode);
-    let mut bad: Vec<Bad> = (0..scores.episodes()).map(of_episode).collect();
-    bad.sort_by(Bad::order);
-    bad.iter().map(|bad| bad.episode).collect()
-}
-
-/// How bad an episode was under a controller.
-struct Bad {
-    status: Status,
-    excess: f64,
-    /// Step of the first failure; the last possible one where no single step failed.
-    failed_step: u32,
-    episode: usize,
-    agent: usize,
-    channel: usize,
-}
-
-impl Bad {
-    fn of(campaign: &Campaign, scores: &Scores, controller: usize, episode: usize) -> Self {
-        let status = scores.status[controller][episode];
-        let step = |agent: usize| {
-            let (group, own) = campaign.member(agent);
-            let of_group = &scores.groups[campaign.group_index(agent)];
-            let steps = &of_group.failed_step[controller];
-            steps[episode * group.team + own].unwrap_or(u32::MAX)
-        };
-        let agents = campaign.agents();
-        let first = (0..agents).min_by_key(|&agent| step(agent)).unwrap_or(0);
-        // If an episode diverges, only its first failing agent counts: it may have pulled the others along.
-        let looked_at = match status {
-            Status::Diverged => first..first + 1,
-            Status::Ok | Status::Exceeded => 0..agents,
-        };
-        let of_agent = |agent: usize| {
-            let (group, own) = campaign.member(agent);
-            let channels = group.channels().len();
-            let errors = &scores.groups[campaign.group_index(agent)].max_abs[controller];
-            let errors = &errors[(episode * group.team + own) * channels..];
-            let limits = group.verdict.max_error.iter().zip(errors).enumerate();
-            limits.map(move |(channel, (limit, error))| {
-                let limit = if limit.is_finite() { *limit } else { 1.0 };
-                let excess = match error / limit {
-                    // What left the numbers is as large as can be.
-                    excess if excess.is_nan() => f64::INFINITY,
-                    excess => excess,
-                };
-                (excess, agent, channel)
-            })
-        };
-        let largest = looked_at
-            .flat_map(of_agent)
-            .reduce(|a, b| if b.0 > a.0 { b } else { a });
-        let (excess, agent, channel) = largest.unwrap_or_default();
-        Self {
-            status,
-            excess,
-            failed_step: step(first),
-            episode,
-            agent,
-            channel,
-        }
-    }
-
-    /// Worst first.
-    fn order(&self, other: &Self) -> Ordering {
-        let by_size = match self.status {
-            Status::Diverged => self.failed_step.cmp(&other.failed_step),
-            Status::Ok | Status::Exceeded => other.excess.total_cmp(&self.excess),
-        };
-        let by_status = other.status.cmp(&self.status);
-        by_status
-            .then(by_size)
-            .then(self.episode.cmp(&other.episode))
-    }
-
-    fn named(
-        self,
+impl WorstEpisode {
+    fn new(
         campaign: &Campaign,
         scores: &Scores,
         controller: &str,
         rank: usize,
-    ) -> WorstEpisode {
+        bad: &BadEpisode,
+    ) -> Self {
         let time = campaign.time;
-        let index = u32::try_from(self.episode).unwrap_or(u32::MAX);
+        let index = u32::try_from(bad.episode).unwrap_or(u32::MAX);
         let faults = campaign.faults().zip(&scores.fault_occurs);
-        let struck = faults.filter(|(_, occurs)| occurs.get(self.episode) == Some(&true));
+        let struck = faults.filter(|(_, occurs)| occurs.get(bad.episode) == Some(&true));
         let titled = |((group, fault), _): ((&AgentGroup, &Fault), _)| group.titled(&fault.name);
         let conditions = scores.conditions.iter();
-        WorstEpisode {
+        Self {
             controller: controller.to_string(),
             rank,
             episode: index,
-            status: self.status,
-            excess: self.excess,
-            failed_at_s: (self.failed_step != u32::MAX)
-                .then(|| f64::from(self.failed_step) * time.step_s),
-            agent: self.agent,
-            channel: campaign.member(self.agent).0.channels()[self.channel].clone(),
+            status: bad.status,
+            excess: bad.excess,
+            failed_at_s: (bad.failed_step != u32::MAX)
+                .then(|| f64::from(bad.failed_step) * time.step_s),
+            agent: bad.agent,
+            channel: campaign.member(bad.agent).0.channels()[bad.channel].clone(),
             stratum: campaign.strata.of(index).map(|own| own.name.clone()),
             faults: struck.map(titled).map(Arc::from).collect(),
             conditions: conditions
-                .map(|(name, values)| (name.clone(), values[self.episode]))
+                .map(|(name, values)| {
+                    let value = values[bad.episode];
+                    (name.clone(), (!value.is_nan()).then_some(value))
+                })
                 .collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! The tables of a run: a row per episode, controller and agent, and one per channel, filled as batches end.
 
 use super::long_tables::{add_conditions, add_faults};
-use super::scores::{ChannelGroupScores, ChannelScores, GroupScores, Scores, Status, status};
+use super::scores::{AgentScores, ChannelScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
@@ -11,7 +11,6 @@ use crate::draw::{AgentDraw, AppliedEpisode};
 use crate::model::episode::AgentOutcome;
 use crate::model::inputs::later_onsets;
 use crate::model::metric::{ChannelOutcome, ERROR_METRICS, Metric, OTHER_METRICS};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The tables of a run, and the numbers that its statistics read.
@@ -38,7 +37,6 @@ impl Tables {
     /// Empty tables of a campaign.
     #[must_use]
     pub fn new(campaign: &Campaign) -> Self {
-        let controllers = campaign.controllers.len();
         let conditions = conditions(campaign);
         Self {
             episodes: Table::default(),
@@ -51,13 +49,12 @@ impl Tables {
                 .map(|name| Arc::from(name.as_str()))
                 .collect(),
             scores: Scores {
-                status: vec![Vec::new(); controllers],
-                groups: vec![GroupScores::new(controllers); campaign.groups().len()],
                 fault_occurs: vec![Vec::new(); campaign.faults().count()],
                 conditions: conditions
                     .iter()
                     .map(|condition| (condition.key.clone(), Vec::new()))
                     .collect(),
+                ..Scores::new(campaign)
             },
             quantities: campaign.groups().iter().map(quantities).collect(),
             conditions,
@@ -80,7 +77,7 @@ impl Tables {
             occurs.push(own);
         }
         for ((_, values), condition) in self.scores.conditions.iter_mut().zip(&self.conditions) {
-            values.push(condition.of(&applied));
+            values.push(condition.of(&applied).unwrap_or(f64::NAN));
         }
         for (index, (group, applied)) in groups().enumerate() {
             let quantities = &self.quantities[index];
@@ -99,9 +96,12 @@ impl Tables {
                         .collect()
                 })
                 .collect();
-            let worst = judged.iter().flatten().map(|agent| agent.status).max();
-            let worst = worst.unwrap_or(Status::Ok);
-            self.scores.status[controller].push(worst);
+            let scores = groups().zip(&judged).map(|((group, _), judged)| {
+                let agents = judged.iter();
+                agents.map(|agent| agent.scores(group.time)).collect()
+            });
+            let scores: Vec<Vec<AgentScores>> = scores.collect();
+            let worst = self.scores.add(campaign, controller, &scores);
             for (index, judged) in judged.iter().enumerate() {
                 self.add_group(campaign, index, controller, judged, &applied[index], worst);
             }
@@ -119,13 +119,6 @@ impl Tables {
         worst: Status,
     ) {
         let group = &campaign.groups()[index];
-        let scores = &mut self.scores.groups[index];
-        let own_worst = judged.iter().map(|agent| agent.status).max();
-        scores.status[controller].push(own_worst.unwrap_or(Status::Ok));
-        for ChannelGroup { channels, .. } in group.channel_groups() {
-            let of_episode = of_agents(group.time, judged, &channels);
-            scores.channel_groups[controller].push(of_episode);
-        }
         for (place, (judged, draw)) in judged.iter().zip(&applied.agents).enumerate() {
             let key = |row: &mut Row<'_>| {
                 row.count(|| "episode".into(), u64::from(applied.index))
@@ -145,31 +138,15 @@ impl Tables {
             }
             judged.write_agent(&mut row, group, worst);
             write_draw(&mut row, group, &self.quantities[index], draw);
-            scores.failed_step[controller].push(judged.outcome.failed_step);
             let channels = group.channels().iter();
             for (channel, outcome) in channels.zip(&judged.outcome.channels) {
                 let mut row = self.channels.row();
                 key(&mut row);
                 row.name(|| "channel".into(), channel.clone());
                 judged.write_channel(&mut row, campaign.time, outcome);
-                scores.rmse[controller].push(outcome.rmse);
-                scores.max_abs[controller].push(outcome.max_abs);
             }
         }
     }
-}
-
-/// What agents showed on some of their channels, beside the errors.
-fn of_agents(
-    time: Time,
-    judged: &[AgentVerdict<'_>],
-    channels: &Range<usize>,
-) -> ChannelGroupScores {
-    if judged.iter().any(|agent| agent.outcome.diverged) {
-        return ChannelGroupScores::DIVERGED;
-    }
-    let agents = judged.iter();
-    ChannelGroupScores::of(agents.flat_map(|agent| agent.of_channels(time, channels)))
 }
 
 /// Whether an agent has a fault of its group.
@@ -274,11 +251,13 @@ impl<'a> AgentVerdict<'a> {
         Some(f64::from(calm.saturating_sub(fault)) * time.step_s)
     }
 
-    /// What each of some channels showed, beside its error.
-    fn of_channels(&self, time: Time, channels: &Range<usize>) -> Vec<ChannelScores> {
+    /// What the statistics read.
+    fn scores(&self, time: Time) -> AgentScores {
         let never = |time_s: Option<f64>| time_s.unwrap_or(f64::INFINITY);
-        let channels = self.outcome.channels[channels.clone()].iter();
-        let scores = channels.map(|metrics| ChannelScores {
+        let channels = self.outcome.channels.iter();
+        let channels = channels.map(|metrics| ChannelScores {
+            rmse: metrics.rmse,
+            max_abs: metrics.max_abs,
             peak: metrics.u_max,
             effort: metrics.effort,
             saturated: metrics.saturated_fraction,
@@ -287,7 +266,11 @@ impl<'a> AgentVerdict<'a> {
                 .first_fault
                 .map(|_| never(self.recovery_s(time, metrics))),
         });
-        scores.collect()
+        AgentScores {
+            status: self.status,
+            failed_step: self.outcome.failed_step,
+            channels: channels.collect(),
+        }
     }
 
     fn calm_from(&self, last_outside: Option<u32>, end: u32) -> Option<u32> {

@@ -1,32 +1,35 @@
-//! A metric of a team's episode, from those of its agents and channels.
+//! A team's RMS error in each episode, on a channel group or on one channel.
 
-use super::scores::{GroupScores, Scores, Status};
+use super::scores::{ChannelGroupScores, GroupScores, Scores, Status};
 use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign};
-use crate::statistics::rms;
-use std::ops::Range;
 
-/// Where the values of some channels of a team's episode lie in a list of [`GroupScores`].
-pub(super) struct Layout {
+/// Channels of a group of agents whose errors the scores have as one number.
+pub(super) struct Errors {
     group: usize,
-    team: usize,
-    /// Channels of an agent.
-    width: usize,
-    channels: Range<usize>,
+    /// The place of the channel, or of the channel group, among so many.
+    place: usize,
+    of: usize,
+    on_one_channel: bool,
 }
 
-impl Layout {
-    pub(super) fn new(campaign: &Campaign, of: &ChannelsOfCampaign) -> Self {
-        Self::of_channels(campaign, of.group, of.channels.clone())
+impl Errors {
+    /// On a channel group.
+    pub(super) fn on(campaign: &Campaign, of: &ChannelsOfCampaign) -> Self {
+        Self {
+            group: of.group,
+            place: of.place,
+            of: campaign.groups()[of.group].channel_groups().len(),
+            on_one_channel: false,
+        }
     }
 
-    /// Of any channels of a group of agents.
-    pub(super) fn of_channels(campaign: &Campaign, group: usize, channels: Range<usize>) -> Self {
-        let own = &campaign.groups()[group];
+    /// On a channel of a group of agents.
+    pub(super) fn on_channel(campaign: &Campaign, group: usize, channel: usize) -> Self {
         Self {
             group,
-            team: own.team,
-            width: own.channels().len(),
-            channels,
+            place: channel,
+            of: campaign.groups()[group].channels().len(),
+            on_one_channel: true,
         }
     }
 
@@ -40,28 +43,42 @@ impl Layout {
         &scores.groups[self.group]
     }
 
-    /// The values of an episode, agent by agent.
-    pub(super) fn of<'a>(
-        &'a self,
-        values: &'a [f64],
-        episode: usize,
-    ) -> impl Iterator<Item = f64> + 'a {
-        let width = self.width;
-        (0..self.team).flat_map(move |agent| {
-            let first = (episode * self.team + agent) * width;
-            self.channels
-                .clone()
-                .map(move |channel| values[first + channel])
-        })
+    /// RMS error of each episode over the team and the channels; infinite where an agent diverged.
+    pub(super) fn rmse(&self, scores: &Scores, controller: usize) -> Vec<f64> {
+        let own = self.scores(scores);
+        match self.on_one_channel {
+            true => {
+                let values = own.rmse[controller].iter().copied();
+                self.of_episodes(own, controller, values)
+            }
+            false => self.of_channel_group(scores, controller, |own| own.rmse),
+        }
     }
-}
 
-/// RMS error of each episode over the team and the channels; infinite where an agent diverged.
-pub(super) fn team_rmse(scores: &Scores, controller: usize, layout: &Layout) -> Vec<f64> {
-    let own = layout.scores(scores);
-    let of_episode = |episode: usize| match own.status[controller][episode] {
-        Status::Diverged => f64::INFINITY,
-        _ => rms(layout.of(&own.rmse[controller], episode)),
-    };
-    (0..scores.episodes()).map(of_episode).collect()
+    /// A number of each episode on the channel group; infinite where an agent diverged.
+    pub(super) fn of_channel_group(
+        &self,
+        scores: &Scores,
+        controller: usize,
+        number: fn(&ChannelGroupScores) -> f64,
+    ) -> Vec<f64> {
+        let own = self.scores(scores);
+        let values = own.channel_groups[controller].iter().map(number);
+        self.of_episodes(own, controller, values)
+    }
+
+    fn of_episodes(
+        &self,
+        own: &GroupScores,
+        controller: usize,
+        values: impl Iterator<Item = f64>,
+    ) -> Vec<f64> {
+        let own_place = values.skip(self.place).step_by(self.of);
+        let with_status = own_place.zip(&own.status[controller]);
+        let of_episode = |(value, status): (f64, &Status)| match status {
+            Status::Diverged => f64::INFINITY,
+            Status::Ok | Status::Exceeded => value,
+        };
+        with_status.map(of_episode).collect()
+    }
 }

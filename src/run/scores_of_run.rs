@@ -1,9 +1,8 @@
 //! The scores of a run, read back from its tables.
 
 use super::table_reader::TableReader;
-use crate::agent::ChannelGroup;
 use crate::campaign::{AgentGroup, Campaign};
-use crate::results::scores::{ChannelGroupScores, ChannelScores, GroupScores, Scores, Status};
+use crate::results::scores::{AgentScores, ChannelScores, Scores, Status};
 
 /// What the tables of a run say about its first episodes, as the run had it; of the conditions of the ranking nothing,
 /// and of the recovery nothing.
@@ -15,18 +14,13 @@ pub(super) fn scores_of_run(
     [episodes, channels]: [&TableReader; 2],
     count: usize,
 ) -> Result<Scores, String> {
-    let controllers = campaign.controllers.len();
-    let mut scores = Scores {
-        status: vec![Vec::new(); controllers],
-        groups: vec![GroupScores::new(controllers); campaign.groups().len()],
-        fault_occurs: vec![vec![false; count]; campaign.faults().count()],
-        conditions: Vec::new(),
-    };
+    let mut scores = Scores::new(campaign);
+    scores.fault_occurs = vec![vec![false; count]; campaign.faults().count()];
     let (mut agent_row, mut channel_row) = (0, 0);
     for episode in 0..count {
         for (controller, name) in campaign.controllers.iter().enumerate() {
-            let mut worst = Status::Ok;
-            for (index, group) in campaign.groups().iter().enumerate() {
+            let mut groups = Vec::new();
+            for group in campaign.groups() {
                 let rows = Rows {
                     campaign,
                     group,
@@ -34,8 +28,7 @@ pub(super) fn scores_of_run(
                     agents: agent_row,
                     channels: channel_row,
                 };
-                let own = &mut scores.groups[index];
-                worst = worst.max(rows.read(episodes, channels, controller, own)?);
+                groups.push(rows.read(episodes, channels)?);
                 for fault in 0..group.faults.len() {
                     let number = group.first_fault + fault;
                     let column = format!("fault{number}_occurs");
@@ -46,7 +39,7 @@ pub(super) fn scores_of_run(
                 agent_row += group.team;
                 channel_row += group.team * group.channels().len();
             }
-            scores.status[controller].push(worst);
+            scores.add(campaign, controller, &groups);
         }
     }
     Ok(scores)
@@ -65,42 +58,28 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Adds them to the scores of the group; the worst status of its agents.
+    /// How the agents fared.
     fn read(
         &self,
         episodes: &TableReader,
         channels: &TableReader,
-        controller: usize,
-        scores: &mut GroupScores,
-    ) -> Result<Status, String> {
+    ) -> Result<Vec<AgentScores>, String> {
         let (team, width) = (self.group.team, self.group.channels().len());
-        let mut worst = Status::Ok;
-        for place in 0..team {
+        let of_agent = |place: usize| {
             let row = self.agents + place;
             self.is_of(episodes, "episodes", row, place)?;
             let status = status(episodes.text(row, "status"))
                 .ok_or_else(|| format!("episodes.parquet, row {row}: no status"))?;
-            worst = worst.max(status);
             let failed_at_s = episodes.real(row, "failed_at_s");
             let step = || self.campaign.time.onset_step(failed_at_s);
-            scores.failed_step[controller].push(failed_at_s.is_finite().then(step));
-            for channel in 0..width {
+            let of_channel = |channel: usize| {
                 let row = self.channels + place * width + channel;
                 self.is_of(channels, "channels", row, place)?;
-                scores.rmse[controller].push(channels.real(row, "rmse"));
-                scores.max_abs[controller].push(channels.real(row, "max_abs"));
-            }
-        }
-        scores.status[controller].push(worst);
-        for ChannelGroup { channels: own, .. } in self.group.channel_groups() {
-            let rows = (0..team).flat_map(|place| {
-                own.clone()
-                    .map(move |channel| self.channels + place * width + channel)
-            });
-            let of_row = |row| {
                 let of = |name: &str| channels.real(row, name);
                 let settling_s = of("settling_s");
-                ChannelScores {
+                Ok(ChannelScores {
+                    rmse: of("rmse"),
+                    max_abs: of("max_abs"),
                     peak: of("u_max"),
                     effort: of("effort"),
                     saturated: of("saturated_fraction"),
@@ -110,14 +89,15 @@ impl Rows<'_> {
                         settling_s
                     },
                     recovery_s: None,
-                }
+                })
             };
-            scores.channel_groups[controller].push(match worst {
-                Status::Diverged => ChannelGroupScores::DIVERGED,
-                Status::Ok | Status::Exceeded => ChannelGroupScores::of(rows.map(of_row)),
-            });
-        }
-        Ok(worst)
+            Ok(AgentScores {
+                status,
+                failed_step: failed_at_s.is_finite().then(step),
+                channels: (0..width).map(of_channel).collect::<Result<_, String>>()?,
+            })
+        };
+        (0..team).map(of_agent).collect()
     }
 
     /// That a row is the one that is expected there.

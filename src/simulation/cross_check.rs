@@ -130,8 +130,11 @@ pub fn cross_check(
         let expected = reference.trace(episodes, controllers, every, &errors)?;
         for (&episode, found) in episodes.iter().zip(&found) {
             let repeated = |(controller, traced): (usize, &Traced)| {
-                let mut groups = scores.groups.iter().zip(traced);
-                groups.all(|(scores, traced)| scores.holds(controller, episode, &traced.outcomes))
+                let groups = campaign.groups().iter().zip(&scores.groups);
+                let mut groups = groups.zip(traced);
+                groups.all(|((group, scores), traced)| {
+                    scores.holds(group, controller, episode, &traced.outcomes)
+                })
             };
             let pairs = found.iter().enumerate();
             check.not_repeated += pairs.filter(|&pair| !repeated(pair)).count();

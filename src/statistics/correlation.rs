@@ -105,9 +105,9 @@ fn sums_above(order: &Ranked, values: &[f64]) -> Vec<f64> {
     let mut above = 0.0;
     for run in order.runs().rev() {
         let rows = &order.order()[run];
-        let level: f64 = rows.iter().map(|&row| values[row]).sum();
+        let level: f64 = rows.iter().map(|&row| values[row as usize]).sum();
         for &row in rows {
-            sums[row] = 2.0 * above + level;
+            sums[row as usize] = 2.0 * above + level;
         }
         above += level;
     }

@@ -107,13 +107,13 @@ pub fn effects(
     }
 
     // Those with the same rows and ties, by the index of the parameter.
-    let mut groups: BTreeMap<[Vec<usize>; 2], Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<(Vec<u32>, Vec<usize>), Vec<usize>> = BTreeMap::new();
     for (i, parameter) in parameters.iter().enumerate() {
         if effects[i].is_some() && !is_large(parameter) {
             let mut rows = parameter.order().to_vec();
             rows.sort_unstable();
             let ties = parameter.runs().map(|run| run.end).collect();
-            groups.entry([rows, ties]).or_default().push(i);
+            groups.entry((rows, ties)).or_default().push(i);
         }
     }
     for members in groups.values() {

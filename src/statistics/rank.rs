@@ -7,18 +7,18 @@
 pub struct Ranked {
     /// Rows of the table, with and without a value.
     rows: usize,
-    /// The rows with a value, by ascending value.
-    order: Vec<usize>,
+    /// The rows with a value, by ascending value; 32 bits, since there is a column of a million rows for each condition.
+    order: Vec<u32>,
     /// Where each run of equal values begins in `order`, and after them the length of `order`.
-    runs: Vec<usize>,
+    runs: Vec<u32>,
 }
 
 impl Ranked {
-    /// Ranks a column of which some rows may have no value. `None` if a value is NaN.
+    /// Ranks a column of which some rows may have no value. `None` if a value is NaN, or of more than 2^32 - 1 rows.
     pub fn of(values: &[Option<f64>]) -> Option<Self> {
-        let mut present: Vec<(f64, usize)> = values
-            .iter()
-            .enumerate()
+        u32::try_from(values.len()).ok()?;
+        let mut present: Vec<(f64, u32)> = (0..)
+            .zip(values)
             .filter_map(|(row, value)| value.map(|value| (value, row)))
             .collect();
         if present.iter().any(|(value, _)| value.is_nan()) {
@@ -33,7 +33,7 @@ impl Ranked {
         })
     }
 
-    /// Ranks a column with a value in every row. `None` if a value is NaN.
+    /// Ranks a column with a value in every row. `None` as [`Self::of`].
     pub fn of_all(values: &[f64]) -> Option<Self> {
         let values: Vec<Option<f64>> = values.iter().copied().map(Some).collect();
         Self::of(&values)
@@ -41,9 +41,12 @@ impl Ranked {
 
     /// Ranks what is false below what is true.
     pub fn of_flags(flags: &[bool]) -> Self {
-        let rows_where = |wanted| (0..flags.len()).filter(move |&row| flags[row] == wanted);
-        let order: Vec<usize> = rows_where(false).chain(rows_where(true)).collect();
-        let runs = starts_of_runs(order.len(), |i| flags[order[i - 1]] != flags[order[i]]);
+        let rows = || (0..).zip(flags);
+        let rows_where =
+            |wanted| rows().filter_map(move |(row, &own)| (own == wanted).then_some(row));
+        let order: Vec<u32> = rows_where(false).chain(rows_where(true)).collect();
+        let low = flags.iter().filter(|flag| !**flag).count();
+        let runs = starts_of_runs(order.len(), |i| i == low);
         Self {
             rows: flags.len(),
             order,
@@ -72,13 +75,15 @@ impl Ranked {
     }
 
     /// The rows with a value, by ascending value.
-    pub(super) fn order(&self) -> &[usize] {
+    pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
 
     /// The ranges of `order` that hold equal values.
     pub(super) fn runs(&self) -> impl DoubleEndedIterator<Item = std::ops::Range<usize>> {
-        self.runs.windows(2).map(|ends| ends[0]..ends[1])
+        self.runs
+            .windows(2)
+            .map(|ends| ends[0] as usize..ends[1] as usize)
     }
 
     /// This column on the rows of another one, in that one's order: row i of the result is the row
@@ -88,15 +93,17 @@ impl Ranked {
             return None;
         }
         let mut position = vec![None; self.rows];
-        for (i, &row) in other.order.iter().enumerate() {
-            position[row] = Some(i);
+        for (i, &row) in (0..).zip(&other.order) {
+            position[row as usize] = Some(i);
         }
-        let mut order = Vec::with_capacity(other.len());
+        let mut order: Vec<u32> = Vec::with_capacity(other.len());
         let mut runs = vec![0];
         for run in self.runs() {
-            order.extend(self.order[run].iter().filter_map(|&row| position[row]));
-            if runs.last() != Some(&order.len()) {
-                runs.push(order.len());
+            let before = order.len();
+            let own = self.order[run].iter();
+            order.extend(own.filter_map(|&row| position[row as usize]));
+            if order.len() > before {
+                runs.push(u32::try_from(order.len()).ok()?);
             }
         }
         (order.len() == other.len()).then_some(Ranked {
@@ -122,7 +129,7 @@ impl Ranked {
     pub(super) fn ranks_by_row(&self) -> Vec<f64> {
         let mut ranks = vec![0.0; self.rows];
         for (&row, rank) in self.order.iter().zip(self.ascending_ranks()) {
-            ranks[row] = rank;
+            ranks[row as usize] = rank;
         }
         ranks
     }
@@ -147,11 +154,8 @@ impl Ranked {
 }
 
 /// The starts of runs in 0..n, where `begins(i)` says whether a new one begins at i > 0; and n.
-fn starts_of_runs(n: usize, begins: impl Fn(usize) -> bool) -> Vec<usize> {
-    let mut starts = vec![0];
-    starts.extend((1..n).filter(|&i| begins(i)));
-    if n > 0 {
-        starts.push(n);
-    }
-    starts
+fn starts_of_runs(n: usize, begins: impl Fn(usize) -> bool) -> Vec<u32> {
+    let starts = (1..n).filter(|&i| begins(i)).chain((n > 0).then_some(n));
+    let starts = starts.map(|i| u32::try_from(i).unwrap_or(u32::MAX));
+    std::iter::once(0).chain(starts).collect()
 }

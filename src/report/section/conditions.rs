@@ -217,9 +217,10 @@ fn sizes(data: &RunData, condition: &str) -> Vec<f64> {
     let size = |episode| {
         let groups = campaign.groups().iter();
         let applied = groups.map(|group| draw(group, episode).applied(group));
-        measured?.of(&applied.collect::<Vec<_>>())
+        let size = measured.and_then(|own| own.of(&applied.collect::<Vec<_>>()));
+        size.unwrap_or(f64::NAN)
     };
-    let sizes: Vec<Option<f64>> = (0..data.manifest.episodes).map(size).collect();
+    let sizes: Vec<f64> = (0..data.manifest.episodes).map(size).collect();
     let drawn = by_chance(campaign, condition, &sizes);
     drawn
         .into_iter()

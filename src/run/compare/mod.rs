@@ -12,7 +12,7 @@ use super::scores_of_run::scores_of_run;
 use super::table_reader::TableReader;
 use crate::campaign::{ALL, Campaign, Compared, Requirement};
 use crate::controllers::GainSet;
-use crate::results::scores::{GroupScores, Scores};
+use crate::results::scores::Scores;
 use crate::results::{
     Favour, MetricQuantiles, PairedComparison, RequirementResult, Terms, compare_pairs, judged,
     requirements, summarise, terms, unlike,
@@ -171,7 +171,9 @@ pub fn compare_runs(a: &Path, b: &Path, asked: &Asked) -> Result<RunComparison, 
         return Err(CompareError::Differ { a, b, what });
     }
     let pairs = pairs(&a.campaign, &b.campaign, asked)?;
-    let scores = merged(a.scores(episodes)?, b.scores(episodes)?);
+    // The controllers of the second behind those of the first.
+    let mut scores = a.scores(episodes)?;
+    scores.extend(b.scores(episodes)?);
     let names = |label: char, run: &ReadRun| {
         let names = run.campaign.controllers.iter();
         names
@@ -210,26 +212,6 @@ fn both((a, b): (&GainSet, &GainSet)) -> GainSet {
     GainSet {
         controllers: [&a.controllers[..], &b.controllers].concat(),
     }
-}
-
-/// The scores of both runs, the controllers of the second behind those of the first.
-fn merged(mut a: Scores, b: Scores) -> Scores {
-    a.status.extend(b.status);
-    for (a, b) in a.groups.iter_mut().zip(b.groups) {
-        let GroupScores {
-            status,
-            rmse,
-            max_abs,
-            failed_step,
-            channel_groups,
-        } = b;
-        a.status.extend(status);
-        a.rmse.extend(rmse);
-        a.max_abs.extend(max_abs);
-        a.failed_step.extend(failed_step);
-        a.channel_groups.extend(channel_groups);
-    }
-    a
 }
 
 /// The pairs that are compared, each the place of the second run's controller among all of both runs, then that of the
@@ -318,7 +300,7 @@ fn compared(
     let judged = judged(campaign, summary, &of_all, &[]);
     let of_pair = |(&[b, a], (favour, verdict)): (&[usize; 2], (Favour, String))| {
         let same = (0..scores.episodes())
-            .filter(|&episode| same(campaign, scores, [b, a], episode))
+            .filter(|&episode| scores.alike([b, a], episode))
             .count();
         let [b, a] = [b, a].map(|place| campaign.controllers[place].clone());
         let of = |name: &str| {
@@ -339,25 +321,6 @@ fn compared(
         }
     };
     pairs.iter().zip(judged).map(of_pair).collect()
-}
-
-/// Whether an episode ended the same under both of a pair, to the last digit of every error.
-fn same(campaign: &Campaign, scores: &Scores, [b, a]: [usize; 2], episode: usize) -> bool {
-    let groups = campaign.groups().iter().zip(&scores.groups);
-    let of_group = |(group, own): (&crate::campaign::AgentGroup, &GroupScores)| {
-        let stride = group.team * group.channels().len();
-        let rows = episode * stride..(episode + 1) * stride;
-        let alike = |values: &[Vec<f64>]| {
-            let [b, a] = [b, a].map(|place| &values[place][rows.clone()]);
-            let bits = |value: &f64| match value.is_nan() {
-                true => f64::NAN.to_bits(),
-                false => value.to_bits(),
-            };
-            b.iter().map(bits).eq(a.iter().map(bits))
-        };
-        own.status[b][episode] == own.status[a][episode] && alike(&own.rmse) && alike(&own.max_abs)
-    };
-    scores.status[b][episode] == scores.status[a][episode] && groups.into_iter().all(of_group)
 }
 
 /// What may explain a difference, and what was left out.

@@ -33,6 +33,9 @@ fn channel_ratios(campaign: &Campaign, a: &str, b: &str) -> Vec<f64> {
         names.position(|own| own == name).unwrap()
     });
     let scores = &tables.scores.groups[0];
+    let frame = tables.channels.to_frame().unwrap();
+    let rmse = frame.column("rmse").unwrap().f64().unwrap();
+    let controllers = campaign.controllers.len();
     let (team, width) = (
         campaign.first_group().team,
         campaign.first_group().channels().len(),
@@ -42,8 +45,11 @@ fn channel_ratios(campaign: &Campaign, a: &str, b: &str) -> Vec<f64> {
             return f64::INFINITY;
         }
         let of = |agent: usize| {
-            let place = (episode * team + agent) * width + channel;
-            (scores.rmse[b][place] / scores.rmse[a][place]).ln()
+            let [of_b, of_a] = [b, a].map(|controller| {
+                let agents = (episode * controllers + controller) * team + agent;
+                rmse.get(agents * width + channel).unwrap_or(f64::INFINITY)
+            });
+            (of_b / of_a).ln()
         };
         (0..team).map(of).sum::<f64>() / team as f64
     };

@@ -1,10 +1,11 @@
 //! Sampling designs in campaigns: draws balanced through `draw`, replicates, and the statistics that they leave out.
 
 use crate::common::{altered, tables};
+use crate::results::scores_of_channels;
 use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
 use urts_mc::draw::{Episode, draw};
-use urts_mc::results::scores::{GroupScores, Scores, Status};
+use urts_mc::results::scores::{Scores, Status};
 use urts_mc::results::sensitivity::{rank, ranking_table};
 use urts_mc::results::table::Table;
 use urts_mc::results::{compare, comparison_table, summarise, summary_table, verdict};
@@ -175,31 +176,18 @@ fn designs_leave_alone_what_they_do_not_concern() {
 /// Scores of eight replicates of eight episodes: in replicate r the first controller fails r times, and the errors of
 /// the second are e^r times as large.
 fn scores(campaign: &Campaign) -> Scores {
-    let values = campaign.first_group().team * campaign.first_group().channels().len();
-    let controllers = campaign.controllers.len();
-    let mut scores = Scores {
-        status: vec![vec![Status::Ok; 64]; controllers],
-        groups: vec![GroupScores {
-            status: vec![vec![Status::Ok; 64]; controllers],
-            rmse: vec![vec![0.01; 64 * values]; controllers],
-            max_abs: vec![vec![0.01; 64 * values]; controllers],
-            failed_step: vec![vec![None; 64 * campaign.first_group().team]; controllers],
-            channel_groups: vec![Vec::new(); controllers],
-        }],
-        fault_occurs: vec![vec![true; 64]; campaign.first_group().faults.len()],
-        conditions: vec![(
-            "mass_scale".into(),
-            (0..64).map(|k| Some(f64::from(k * 37 % 64))).collect(),
-        )],
-    };
-    for episode in 0..64 {
+    let fared = |controller: usize, episode: usize, _: usize| {
         let (replicate, row) = (episode % 8, episode / 8);
-        if row < replicate {
-            scores.status[0][episode] = Status::Exceeded;
+        match controller {
+            0 if row < replicate => (Status::Exceeded, 0.01),
+            1 => (Status::Ok, 0.01 * (replicate as f64).exp()),
+            _ => (Status::Ok, 0.01),
         }
-        scores.groups[0].rmse[1][episode * values..][..values]
-            .fill(0.01 * (replicate as f64).exp());
-    }
+    };
+    let mut scores = scores_of_channels(campaign, fared);
+    scores.fault_occurs = vec![vec![true; 64]; campaign.first_group().faults.len()];
+    let sizes = (0..64).map(|k| f64::from(k * 37 % 64)).collect();
+    scores.conditions = vec![("mass_scale".into(), sizes)];
     scores
 }
 
@@ -364,5 +352,5 @@ fn the_replicate_is_a_column_and_an_episode_of_a_design_is_replayed() {
     run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
     let again = replay(out.path(), 11, "pid", None).unwrap();
     let scores = tables(&campaign, Precision::F32).scores;
-    assert!(scores.groups[0].holds(1, 11, &again.outcomes));
+    assert!(scores.groups[0].holds(campaign.first_group(), 1, 11, &again.outcomes));
 }

@@ -1,11 +1,11 @@
 //! What is said of each stratum, against numbers worked out by hand.
 
-use super::scores_of_channels;
+use super::{scores_of_agents, scores_of_channels, with_error};
 use crate::common::altered;
 use urts_mc::campaign::{Campaign, Strata};
 use urts_mc::random::philox::{Address, Stream};
 use urts_mc::results::flights::Chatter;
-use urts_mc::results::scores::{Scores, Status};
+use urts_mc::results::scores::{AgentScores, Scores, Status};
 use urts_mc::results::sensitivity::worst;
 use urts_mc::results::{
     RateMethod, compare, comparison_table, requirements, screen, summarise, summary_table, verdict,
@@ -381,23 +381,32 @@ fn of_episodes_that_diverge_the_earlier_is_the_worse_and_blames_whom_it_struck_f
         campaign.first_group().team,
         campaign.first_group().channels().len(),
     );
-    let mut scores = scores(&campaign, |_, episode| {
-        let status = match episode {
-            4 | 9 | 20 => Status::Diverged,
-            2 => Status::Exceeded,
-            _ => Status::Ok,
-        };
-        (status, 0.01 * (episode + 1) as f64)
-    });
     // The first agent is pulled along; in episode 20 the last agent goes first, and earlier than anyone in the others.
-    for (episode, step) in [(4, 700), (9, 900), (20, 300)] {
-        for agent in 0..team {
-            scores.groups[0].failed_step[0][episode * team + agent] =
-                Some(step + 5 * (team - agent) as u32);
-            let first = (episode * team + agent) * channels;
-            scores.groups[0].max_abs[0][first + 1..first + channels].fill(f64::NAN);
+    let step = |episode: usize, agent: usize| {
+        let first = match episode {
+            4 => 700,
+            9 => 900,
+            20 => 300,
+            _ => return None,
+        };
+        Some(first + 5 * (team - agent) as u32)
+    };
+    let scores = scores_of_agents(&campaign, |_, episode, agent| {
+        let failed_step = step(episode, agent);
+        let of_channel = |channel: usize| match failed_step {
+            Some(_) if channel > 0 => with_error(f64::NAN),
+            _ => with_error(0.01 * (episode + 1) as f64),
+        };
+        AgentScores {
+            status: match (failed_step, episode) {
+                (Some(_), _) => Status::Diverged,
+                (None, 2) => Status::Exceeded,
+                (None, _) => Status::Ok,
+            },
+            failed_step,
+            channels: (0..channels).map(of_channel).collect(),
         }
-    }
+    });
     let found = worst(&campaign, &scores);
     let of_first: Vec<_> = found.iter().filter(|own| own.controller == "ftc").collect();
     let episodes: Vec<u32> = of_first.iter().map(|own| own.episode).collect();

@@ -34,8 +34,12 @@ fn scores(
     });
     let groups = campaign.channel_groups().len();
     for (controller, own) in scores.groups[0].channel_groups.iter_mut().enumerate() {
-        for episode in 0..campaign.episodes as usize {
-            own.extend(std::iter::repeat_n(group(controller, episode), groups));
+        for (place, own) in own.iter_mut().enumerate() {
+            *own = ChannelGroupScores {
+                rmse: own.rmse,
+                max_abs: own.max_abs,
+                ..group(controller, place / groups)
+            };
         }
     }
     scores
@@ -43,6 +47,8 @@ fn scores(
 
 fn quiet(_: usize, _: usize) -> ChannelGroupScores {
     ChannelGroupScores {
+        rmse: 0.0,
+        max_abs: 0.0,
         peak: 1.0,
         effort: 1.0,
         saturated: 0.0,
@@ -206,7 +212,7 @@ fn survival_counts_those_that_have_failed_by_a_time_and_an_error_is_judged_at_th
         };
         let mut scores = scores(campaign, status, quiet);
         let step = campaign.time.onset_step(1.0);
-        for own in &mut scores.groups[0].failed_step {
+        for own in &mut scores.failed_step {
             own[..10].fill(Some(step));
         }
         scores
