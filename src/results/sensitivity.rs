@@ -157,9 +157,10 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
     targets(campaign).into_iter().flat_map(of_target).collect()
 }
 
-/// A condition, not a number where it does not apply, where it was left to chance. In a stratum whose faults are certain, how many agents have one is not, and
-/// what goes with the number (the first onset, the mean over more channels) would be taken for what goes with the
-/// stratum: where some strata draw their faults, faults are ranked in those only.
+/// A condition where it was left to chance; of its values, one that is not a number does not apply. In a stratum whose
+/// faults are certain, how many agents have one is not, and what goes with the number (the first onset, the mean over
+/// more channels) would be taken for what goes with the stratum: where some strata draw their faults, faults are ranked
+/// in those only.
 pub(crate) fn by_chance(campaign: &Campaign, condition: &str, values: &[f64]) -> Vec<Option<f64>> {
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::ByProbability;
     let strata = &campaign.strata;

@@ -7,7 +7,7 @@
 pub struct Ranked {
     /// Rows of the table, with and without a value.
     rows: usize,
-    /// The rows with a value, by ascending value; 32 bits, since there is a column of a million rows for each condition.
+    /// The rows with a value, by ascending value: in 32 bits, since each condition has a column of all episodes.
     order: Vec<u32>,
     /// Where each run of equal values begins in `order`, and after them the length of `order`.
     runs: Vec<u32>,
