@@ -1,7 +1,7 @@
 //! What all agents of a campaign have in common: its episodes, its controllers and its plan.
 
 use super::overlay::Setting;
-use super::plan::{Sampling, Stop, Strata};
+use super::plan::{Detail, Sampling, Stop, Strata};
 use super::requirement::Requirement;
 use super::time::Time;
 use std::path::PathBuf;
@@ -60,6 +60,8 @@ pub struct Common {
     pub sampling: Sampling,
     /// When the run may end early, if it may.
     pub stop: Option<Stop>,
+    /// Which of the tables that grow with the episodes are written.
+    pub detail: Detail,
     /// Conditions on the result.
     pub requirements: Vec<Requirement>,
 }

@@ -40,7 +40,7 @@ pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
 pub use measure::{EpisodeNumber, LoopNumber, Measure, MeasuredChannels, Side};
 pub use overlay::{Setting, SettingError};
 pub use parameter::{Parameter, SamplingScope};
-pub use plan::{ALL, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
+pub use plan::{ALL, Detail, Goal, Sampling, Stop, Strata, Stratum, StratumFaults};
 pub use quantity::RandomQuantity;
 pub use requirement::{Compared, Requirement};
 pub use time::{Time, Timing};

@@ -1,7 +1,38 @@
 //! The plan of a campaign: which episodes meet what, how their numbers are drawn, and when enough is known.
 
 use crate::random::Design;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::sync::Arc;
+
+/// Which of the tables that grow with the episodes a run writes. Statistics, curves, flights and the report are the
+/// same whichever.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Detail {
+    /// None.
+    Summary,
+    /// That of the episodes alone, with every parameter drawn.
+    Episodes,
+    /// That of the channels, of the faults and of the conditions, too.
+    #[default]
+    All,
+}
+
+impl Detail {
+    /// All of them, the least first.
+    pub const ALL: [Self; 3] = [Self::Summary, Self::Episodes, Self::All];
+
+    /// The word in a campaign file.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Summary => "summary",
+            Self::Episodes => "episodes",
+            Self::All => "all",
+        }
+    }
+}
 
 /// A part of the episodes, which meets faults of its own.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -169,7 +169,7 @@ impl Ends for CompareError {
             Self::Run(error) => error.code(),
             Self::Campaign(error) => error.code(),
             Self::Gains(error) => error.code(),
-            Self::Differ { .. } | Self::Usage { .. } => Code::Usage,
+            Self::Differ { .. } | Self::Detail { .. } | Self::Usage { .. } => Code::Usage,
             Self::Json(error) => error.code(),
         }
     }

@@ -45,6 +45,7 @@ use urts_mc::report::paper::{claim_dir, paper};
 use urts_mc::report::{Length, columns, columns_chapter, report, terminal, trace, tuning};
 use urts_mc::results::can_be_judged;
 use urts_mc::results::dictionary::DICTIONARY;
+use urts_mc::results::extent::Extent;
 use urts_mc::run::directory::OutputDir;
 use urts_mc::run::output_file::OutputFile;
 use urts_mc::run::replay::replay;
@@ -52,6 +53,7 @@ use urts_mc::run::replay_files::ReplayFiles;
 use urts_mc::run::tune::{self, Structure};
 use urts_mc::run::{Extras, Findings, Labels, Progress, run};
 use urts_mc::synthesis::{Preset, synthesize};
+use urts_mc::util::memory;
 
 /// Carries out a command.
 ///
@@ -268,10 +270,14 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     drop(shown);
     let gains = gains?;
     can_be_judged(&campaign, &gains)?;
+    let extent = Extent::of(&campaign);
+    if let Some(memory) = memory::available() {
+        extent.fits(&campaign, memory)?;
+    }
     if arguments.json {
-        print_json(&terminal::plan_json(&campaign, &gains))?;
+        print_json(&terminal::plan_json(&campaign, &gains, extent))?;
     } else if !arguments.quiet {
-        print(&terminal::plan(&campaign, &gains))?;
+        print(&terminal::plan(&campaign, &gains, extent))?;
     }
     Ok(Code::Done)
 }

@@ -30,6 +30,10 @@ const TABLES: &[(&str, &str)] = &[
         "a row for each of the ten worst episodes of a controller",
     ),
     (
+        "curves",
+        "a row per point: pictures of a run without its large tables",
+    ),
+    (
         "flights",
         "a row per flight, controller, channel group and instant",
     ),

@@ -2,16 +2,13 @@
 
 use super::page::document::LegendEntry;
 use super::page::plot::Color;
-use crate::campaign::{AgentGroup, Campaign, CampaignError};
+use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, GainsError};
 use crate::run::error::OutputError;
 use crate::run::manifest::Manifest;
 use crate::run::table_reader::TableReader;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// What a report reads of the table of channels.
-const RMSE_COLUMNS: [&str; 6] = ["episode", "controller", "group", "agent", "channel", "rmse"];
 
 /// Why there is no report.
 #[derive(Debug, Error)]
@@ -34,10 +31,6 @@ pub(crate) struct RunData {
     pub(crate) campaign: Campaign,
     /// Of each group of agents.
     pub(crate) gains: Vec<GainSet>,
-    /// Outcomes and draws, by episode, controller and agent.
-    pub(crate) episodes: TableReader,
-    /// RMS errors, by episode, controller, agent and channel.
-    pub(crate) channels: TableReader,
     pub(crate) summary: TableReader,
     pub(crate) comparison: TableReader,
     /// On what terms the controllers are compared.
@@ -45,6 +38,8 @@ pub(crate) struct RunData {
     pub(crate) screening: TableReader,
     pub(crate) ranking: TableReader,
     pub(crate) worst: TableReader,
+    /// Distributions, survival and bands; empty in runs of older versions.
+    pub(crate) curves: TableReader,
     /// Error and command over time in two flights.
     pub(crate) flights: TableReader,
 }
@@ -60,21 +55,20 @@ impl RunData {
         let gains = GainSet::read(&campaign, &dir.join("gains.json"))?;
         let all =
             |name: &str| TableReader::read(dir, name, |_| true).map(Option::unwrap_or_default);
-        let needed = |name: &str, wanted: fn(&str) -> bool| {
-            TableReader::read(dir, name, wanted)?.ok_or_else(|| OutputError::NoRun {
+        let needed = |name: &str| {
+            TableReader::read(dir, name, |_| true)?.ok_or_else(|| OutputError::NoRun {
                 path: dir.to_path_buf(),
                 reason: format!("{name}.parquet is missing"),
             })
         };
         Ok(Self {
-            episodes: needed("episodes", |_| true)?,
-            channels: needed("channels", |name| RMSE_COLUMNS.contains(&name))?,
-            summary: needed("summary", |_| true)?,
+            summary: needed("summary")?,
             comparison: all("comparison")?,
             fairness: all("fairness")?,
             screening: all("screening")?,
             ranking: all("ranking")?,
             worst: all("worst")?,
+            curves: all("curves")?,
             flights: all("flights")?,
             dir: dir.to_path_buf(),
             manifest,
@@ -91,35 +85,20 @@ impl RunData {
             .collect()
     }
 
-    /// The RMS over a group of agents of a column for each episode under each controller, `[controller][episode]`:
-    /// infinite where an agent diverged. Rows that `wanted` refuses are left out.
-    pub(crate) fn of_teams(
-        &self,
-        sheet: &TableReader,
-        group: &AgentGroup,
-        column: &str,
-        wanted: impl Fn(usize) -> bool,
-    ) -> Vec<Vec<f64>> {
-        let episodes = self.manifest.episodes as usize;
-        let team = group.team as f64;
-        let mut squares = vec![vec![0.0; episodes]; self.campaign.controllers.len()];
-        let of_group = |row: &usize| sheet.text(*row, "group") == &*group.name && wanted(*row);
-        for row in (0..sheet.rows()).filter(of_group) {
-            let controller = self.controller(sheet.text(row, "controller"));
-            let Some(of_controller) = controller.and_then(|index| squares.get_mut(index)) else {
-                continue;
-            };
-            let value = sheet.real(row, column);
-            // An empty cell is a diverged agent.
-            let value = if value.is_nan() { f64::INFINITY } else { value };
-            if let Some(sum) = of_controller.get_mut(whole(sheet.real(row, "episode"))) {
-                *sum += value * value / team;
-            }
-        }
-        for values in &mut squares {
-            values.iter_mut().for_each(|value| *value = value.sqrt());
-        }
-        squares
+    /// The rows of a curve of each controller, on channels where it is of some.
+    pub(crate) fn curves(&self, curve: &str, group: Option<&str>) -> Vec<Vec<usize>> {
+        let of_controller = |name: &String| {
+            let wanted = [("curve", curve), ("controller", name)];
+            let rows = self.curves.find(&wanted);
+            let of_group =
+                |row: &usize| group.is_none_or(|own| self.curves.text(*row, "group") == own);
+            rows.filter(of_group).collect()
+        };
+        self.campaign
+            .controllers
+            .iter()
+            .map(of_controller)
+            .collect()
     }
 
     /// The place of a controller in the campaign.

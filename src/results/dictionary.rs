@@ -224,6 +224,15 @@ pub const DICTIONARY: &[ColumnEntry] = entries! {
     "fault<n>_agents" Real "" "" "how many agents have fault n",
     "fault<n>_<parameter>" Real "by name" "nobody has it" "of an onset the first; else root mean square over team and channels",
     "<group>_<condition>" Real "by name" "it does not act, or nobody has it" "with [[group]]: what the column without the group's name is, of that group",
+    of "curves":
+    "curve" Text "" "" "distribution: of the team's RMS error; survival; band: errors over the strongest condition",
+    "controller" Text "" "" "name of the controller",
+    "group" Text "" "survival" "channels, as in the summary, or one channel",
+    "condition" Text "" "not a band" "the condition, as in the ranking",
+    "x" Real "see curve" "" "distribution: an RMS error; survival: a time in s; band: a value of the condition",
+    "y" Real "see curve" "" "distribution: share of the episodes with no larger error; survival: share not failed by then; band: median RMS error",
+    "y_lower" Real "see curve" "not a band" "band: 5th percentile of the RMS error",
+    "y_upper" Real "see curve" "not a band" "band: 95th percentile of the RMS error",
     of "flights":
     "flight" Text "" "" "median or worst, of the first controller",
     "episode" Whole "" "" "number of the episode",
@@ -232,6 +241,7 @@ pub const DICTIONARY: &[ColumnEntry] = entries! {
     "t_s" Real "s" "" "time",
     "error" Real "m or rad" "the flight diverged" "root mean square of e over agents and channels at that time",
     "command" Real "N or N m" "the flight diverged" "largest |u| of them",
+    "failed_at_s" Real "s" "it did not fail" "when the first agent failed; the end if only max_rmse was broken",
     of "replay":
     "t_s" Real "s" "" "time",
     "agent" Whole "" "" "number of the agent",
@@ -306,7 +316,7 @@ fn unit_of_name(name: &str) -> Option<&'static str> {
 pub fn unit(table: &str, column: &str) -> Option<&'static str> {
     let entry = entry(table, column)?;
     match entry.unit {
-        "" | "see unit" | "that of the metric" => None,
+        "" | "see unit" | "see curve" | "that of the metric" => None,
         "by name" => {
             // A channel's name follows the parameter's.
             let shorter = column.rsplit_once('_').map_or("", |(rest, _)| rest);

@@ -2,7 +2,9 @@
 
 use super::all::Results;
 use super::columns::{comparison_table, fairness_table, screening_table, summary_table};
+use super::curves::curves_table;
 use super::flights::Flights;
+use super::scores::Scores;
 use super::sensitivity::{ranking_table, worst_table};
 use super::table::Table;
 use super::tables::Tables;
@@ -14,6 +16,8 @@ use std::borrow::Cow;
 pub struct Found<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
+    /// How its episodes ended.
+    pub scores: &'a Scores,
     /// Every statistic on it.
     pub results: &'a Results,
     /// Flights that were simulated again.
@@ -23,9 +27,15 @@ pub struct Found<'a> {
 impl<'a> Found<'a> {
     /// What a campaign's run has found.
     #[must_use]
-    pub fn new(campaign: &'a Campaign, results: &'a Results, flights: &'a Flights) -> Self {
+    pub fn new(
+        campaign: &'a Campaign,
+        scores: &'a Scores,
+        results: &'a Results,
+        flights: &'a Flights,
+    ) -> Self {
         Self {
             campaign,
+            scores,
             results,
             flights,
         }
@@ -44,8 +54,8 @@ pub struct RunTable {
 /// Where the rows of a table are from.
 #[derive(Debug, Clone, Copy)]
 pub enum Rows {
-    /// Filled episode by episode: it grows with them, so it is written piece by piece, and as CSV only if that is asked
-    /// for.
+    /// Filled episode by episode: it grows with them, so it is written piece by piece, as CSV only if that is asked
+    /// for, and not at all if `[output] detail` leaves it out.
     Large(fn(&mut Tables) -> &mut Table),
     /// Made when all is known.
     Small(for<'a> fn(Found<'a>) -> Cow<'a, Table>),
@@ -97,6 +107,13 @@ pub const RUN_TABLES: &[RunTable] = &[
     RunTable {
         name: "worst",
         rows: Rows::Small(|found| Cow::Owned(worst_table(&found.results.worst))),
+    },
+    RunTable {
+        name: "curves",
+        rows: Rows::Small(|found| {
+            let ranking = &found.results.ranking;
+            Cow::Owned(curves_table(found.campaign, found.scores, ranking))
+        }),
     },
     RunTable {
         name: "flights",

@@ -11,9 +11,13 @@
 //!
 #![doc = include_str!("README.md")]
 
+mod agent_scores;
 mod all;
+mod bad_episode;
 mod columns;
+pub mod curves;
 pub mod dictionary;
+pub mod extent;
 mod fairness;
 pub mod files;
 pub mod flights;

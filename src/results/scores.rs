@@ -1,52 +1,13 @@
-//! How episodes ended, and the numbers that the statistics of a run read.
+//! The numbers that the statistics of a run read.
 
+use super::bad_episode::BadEpisode;
 use crate::agent::ChannelGroup;
 use crate::campaign::{AgentGroup, Campaign};
 use crate::model::episode::AgentOutcome;
-use crate::model::metric::ChannelOutcome;
 use crate::statistics::rms;
-use serde::Serialize;
 use std::cmp::Ordering;
 
-/// How an agent or an episode ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Status {
-    /// Within the limits.
-    Ok,
-    /// Finite, but a limit of the verdict was broken.
-    Exceeded,
-    /// Left the numbers; ranks worst in every comparison.
-    Diverged,
-}
-
-impl Status {
-    /// The word in the tables.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Ok => "ok",
-            Self::Exceeded => "exceeded",
-            Self::Diverged => "diverged",
-        }
-    }
-}
-
-/// What the verdict of a group makes of an agent's outcome.
-#[must_use]
-pub fn status(group: &AgentGroup, outcome: &AgentOutcome) -> Status {
-    // max_error was judged step by step, in the precision of the loop.
-    let too_large = |(channel, metrics): (usize, &ChannelOutcome)| {
-        metrics.rmse > group.verdict.max_rmse[channel]
-    };
-    if outcome.diverged {
-        Status::Diverged
-    } else if outcome.failed_step.is_some() || outcome.channels.iter().enumerate().any(too_large) {
-        Status::Exceeded
-    } else {
-        Status::Ok
-    }
-}
+pub use super::agent_scores::{AgentScores, ChannelScores, Status, status};
 
 /// Worst episodes that are remembered of each controller.
 const WORST: usize = 10;
@@ -99,36 +60,6 @@ pub struct ChannelGroupScores {
     /// How long after the first fault of an agent its channels were settled again, s, at the longest; infinite where
     /// one did not settle, not a number where no fault began later than the episode.
     pub recovery_s: f64,
-}
-
-/// How an agent fared in an episode.
-#[derive(Debug, Clone)]
-pub struct AgentScores {
-    /// How it ended.
-    pub status: Status,
-    /// Step in which it broke max_error or left the numbers.
-    pub failed_step: Option<u32>,
-    /// What each of its channels showed.
-    pub channels: Vec<ChannelScores>,
-}
-
-/// What one channel of an agent showed.
-#[derive(Debug, Clone, Copy)]
-pub struct ChannelScores {
-    /// RMS error.
-    pub rmse: f64,
-    /// The largest |e|.
-    pub max_abs: f64,
-    /// The largest |u|.
-    pub peak: f64,
-    /// The integral of u^2.
-    pub effort: f64,
-    /// Share of the steps at a limit.
-    pub saturated: f64,
-    /// When it was settled, s; infinite where it did not.
-    pub settling_s: f64,
-    /// How long after the first fault it was settled again, s; infinite where it was not, none where no fault began.
-    pub recovery_s: Option<f64>,
 }
 
 impl ChannelGroupScores {
@@ -194,6 +125,40 @@ impl Scores {
     #[must_use]
     pub fn episodes(&self) -> usize {
         self.status.first().map_or(0, Vec::len)
+    }
+
+    /// Bytes of the numbers that grow with the episodes.
+    #[must_use]
+    pub(super) fn bytes(&self) -> usize {
+        fn of<T>(lists: &[Vec<T>]) -> usize {
+            lists.iter().map(|own| size_of_val(own.as_slice())).sum()
+        }
+        let of_group =
+            |own: &GroupScores| of(&own.status) + of(&own.rmse) + of(&own.channel_groups);
+        let conditions = self.conditions.iter();
+        let conditions: usize = conditions.map(|(_, own)| size_of_val(own.as_slice())).sum();
+        of(&self.status)
+            + of(&self.failed_step)
+            + of(&self.fault_occurs)
+            + conditions
+            + self.groups.iter().map(of_group).sum::<usize>()
+    }
+
+    /// When the first agent of an episode failed under a controller, s; none where none did. What breaks a limit of the
+    /// RMS error alone fails at the end.
+    #[must_use]
+    pub fn failed_at_s(
+        &self,
+        campaign: &Campaign,
+        controller: usize,
+        episode: usize,
+    ) -> Option<f64> {
+        let time = campaign.time;
+        let step = match self.status[controller][episode] {
+            Status::Ok => return None,
+            _ => self.failed_step[controller][episode].unwrap_or(time.steps),
+        };
+        Some(f64::from(step) * time.step_s)
     }
 
     /// Adds how the agents of each group fared under a controller in the next episode; how the episode ended.
@@ -306,92 +271,5 @@ impl GroupScores {
         again.add(group, 0, &agents);
         let kept = self.errors(controller, episode as usize);
         kept.eq(again.errors(0, 0))
-    }
-}
-
-impl ChannelScores {
-    /// Of an outcome, the errors alone.
-    fn errors(outcome: &ChannelOutcome) -> Self {
-        Self {
-            rmse: outcome.rmse,
-            max_abs: outcome.max_abs,
-            peak: f64::NAN,
-            effort: f64::NAN,
-            saturated: f64::NAN,
-            settling_s: f64::NAN,
-            recovery_s: None,
-        }
-    }
-}
-
-/// How bad an episode was under a controller.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BadEpisode {
-    pub(super) status: Status,
-    /// Largest |e| over its limit; infinite after a divergence.
-    pub(super) excess: f64,
-    /// Step of the first failure; the last possible one where no single step failed.
-    pub(super) failed_step: u32,
-    pub(super) episode: usize,
-    pub(super) agent: usize,
-    pub(super) channel: usize,
-}
-
-impl BadEpisode {
-    fn new(
-        campaign: &Campaign,
-        (episode, status): (usize, Status),
-        groups: &[Vec<AgentScores>],
-    ) -> Self {
-        let agents: Vec<&AgentScores> = groups.iter().flatten().collect();
-        let step = |agent: usize| {
-            let own = agents.get(agent).and_then(|own| own.failed_step);
-            own.unwrap_or(u32::MAX)
-        };
-        let all = 0..agents.len();
-        let first = all.clone().min_by_key(|&agent| step(agent)).unwrap_or(0);
-        // If an episode diverges, only its first failing agent counts: it may have pulled the others along.
-        let looked_at = match status {
-            Status::Diverged => first..first + 1,
-            Status::Ok | Status::Exceeded => all,
-        };
-        let of_agent = |agent: usize| {
-            let limits = &campaign.member(agent).0.verdict.max_error;
-            let channels = limits.iter().zip(&agents[agent].channels).enumerate();
-            channels.map(move |(channel, (limit, own))| {
-                let limit = if limit.is_finite() { *limit } else { 1.0 };
-                let excess = match own.max_abs / limit {
-                    // What left the numbers is as large as can be.
-                    excess if excess.is_nan() => f64::INFINITY,
-                    excess => excess,
-                };
-                (excess, agent, channel)
-            })
-        };
-        let largest = looked_at
-            .flat_map(of_agent)
-            .reduce(|a, b| if b.0 > a.0 { b } else { a });
-        let (excess, agent, channel) = largest.unwrap_or_default();
-        Self {
-            status,
-            excess,
-            failed_step: step(first),
-            episode,
-            agent,
-            channel,
-        }
-    }
-
-    /// Worst first: by how they ended, then by the largest error over its limit; of those that diverged, the earlier
-    /// the worse.
-    fn order(&self, other: &Self) -> Ordering {
-        let by_size = match self.status {
-            Status::Diverged => self.failed_step.cmp(&other.failed_step),
-            Status::Ok | Status::Exceeded => other.excess.total_cmp(&self.excess),
-        };
-        let by_status = other.status.cmp(&self.status);
-        by_status
-            .then(by_size)
-            .then(self.episode.cmp(&other.episode))
     }
 }

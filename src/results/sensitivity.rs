@@ -1,7 +1,8 @@
 //! Which condition breaks it: the effect of what was drawn on how the controllers fared, and the worst episodes.
 
+use super::bad_episode::BadEpisode;
 use super::paired::{Measured, log_ratios};
-use super::scores::{BadEpisode, Scores, Status};
+use super::scores::{Scores, Status};
 use super::table::Table;
 use super::team::Errors;
 use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign, Fault, Stratum, StratumFaults};
@@ -161,7 +162,7 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
 /// faults are certain, how many agents have one is not, and what goes with the number (the first onset, the mean over
 /// more channels) would be taken for what goes with the stratum: where some strata draw their faults, faults are ranked
 /// in those only.
-pub(crate) fn by_chance(campaign: &Campaign, condition: &str, values: &[f64]) -> Vec<Option<f64>> {
+pub(super) fn by_chance(campaign: &Campaign, condition: &str, values: &[f64]) -> Vec<Option<f64>> {
     let draws = |stratum: &Stratum| stratum.faults == StratumFaults::ByProbability;
     let strata = &campaign.strata;
     let has_background = |fault| {

@@ -5,6 +5,7 @@ use polars::prelude::{
     PlSmallStr, PolarsError, Series,
 };
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// A table under construction. The first row of a kind says which columns its cells fill; all others of that kind fill
@@ -152,6 +153,22 @@ impl Table {
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// How many real numbers there are in all columns, each counted once in a column.
+    #[must_use]
+    pub(super) fn different_numbers(&self) -> usize {
+        let of_column = |(_, values): &(String, Values)| match values {
+            Values::Real(values) => {
+                let given = values.iter().filter(|own| !own.is_nan());
+                given
+                    .map(|own| own.to_bits())
+                    .collect::<HashSet<u64>>()
+                    .len()
+            }
+            Values::Count(_) | Values::Word(_) | Values::Name(_) | Values::Flag(_) => 0,
+        };
+        self.columns.iter().map(of_column).sum()
     }
 
     /// Takes away the first rows, as a table of their own; all if there are no more.

@@ -5,7 +5,7 @@ use super::scores::{AgentScores, ChannelScores, Scores, Status, status};
 use super::table::{Row, Table};
 use crate::agent::ChannelGroup;
 use crate::backend::EpisodeResult;
-use crate::campaign::{AgentGroup, Campaign, Time};
+use crate::campaign::{AgentGroup, Campaign, Detail, Time};
 use crate::draw::quantities::{Condition, Quantity, Source, conditions, quantities};
 use crate::draw::{AgentDraw, AppliedEpisode};
 use crate::model::episode::AgentOutcome;
@@ -79,7 +79,8 @@ impl Tables {
         for ((_, values), condition) in self.scores.conditions.iter_mut().zip(&self.conditions) {
             values.push(condition.of(&applied).unwrap_or(f64::NAN));
         }
-        for (index, (group, applied)) in groups().enumerate() {
+        let drawn = groups().enumerate();
+        for (index, (group, applied)) in drawn.filter(|_| campaign.detail == Detail::All) {
             let quantities = &self.quantities[index];
             add_faults(&mut self.faults, campaign, group, applied);
             let drawn = &mut self.conditions_drawn;
@@ -119,7 +120,8 @@ impl Tables {
         worst: Status,
     ) {
         let group = &campaign.groups()[index];
-        for (place, (judged, draw)) in judged.iter().zip(&applied.agents).enumerate() {
+        let agents = judged.iter().zip(&applied.agents).enumerate();
+        for (place, (judged, draw)) in agents.filter(|_| campaign.detail >= Detail::Episodes) {
             let key = |row: &mut Row<'_>| {
                 row.count(|| "episode".into(), u64::from(applied.index))
                     .name(|| "controller".into(), self.names[controller].clone());
@@ -138,8 +140,8 @@ impl Tables {
             }
             judged.write_agent(&mut row, group, worst);
             write_draw(&mut row, group, &self.quantities[index], draw);
-            let channels = group.channels().iter();
-            for (channel, outcome) in channels.zip(&judged.outcome.channels) {
+            let channels = group.channels().iter().zip(&judged.outcome.channels);
+            for (channel, outcome) in channels.filter(|_| campaign.detail == Detail::All) {
                 let mut row = self.channels.row();
                 key(&mut row);
                 row.name(|| "channel".into(), channel.clone());

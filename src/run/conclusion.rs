@@ -76,7 +76,8 @@ impl Conclusion<'_> {
 
         progress(Progress::Writing);
         let start = Instant::now();
-        write_small(Found::new(campaign, &results, &flights), staging.files())?;
+        let found = Found::new(campaign, &made.tables.scores, &results, &flights);
+        write_small(found, staging.files())?;
         staging.files().write(GAINS, self.gains_file)?;
         let files = records(staging.files().path(), counted())?;
         times.writing_s = start.elapsed().as_secs_f64();

@@ -45,7 +45,9 @@ pub(super) fn flights(campaign: &Campaign, gains: &[GainSet], scores: &Scores) -
     let traced = traced.unwrap_or_default();
     let (mut table, mut paces) = (Table::default(), Vec::new());
     for (PickedFlight { name, episode }, controllers) in picked.iter().zip(traced) {
-        for (controller, groups) in campaign.controllers.iter().zip(controllers) {
+        let names = campaign.controllers.iter().enumerate();
+        for ((index, controller), groups) in names.zip(controllers) {
+            let failed_at_s = scores.failed_at_s(campaign, index, *episode as usize);
             for (of, all) in channel_groups(campaign, &groups) {
                 let shown = all.len().div_ceil(SHOWN).max(1);
                 for (instant, own) in all.iter().enumerate().step_by(shown) {
@@ -56,7 +58,8 @@ pub(super) fn flights(campaign: &Campaign, gains: &[GainSet], scores: &Scores) -
                         .name(|| "group".into(), of.clone())
                         .real(|| "t_s".into(), instant as f64 * every_s)
                         .real(|| "error".into(), own.error)
-                        .real(|| "command".into(), own.command);
+                        .real(|| "command".into(), own.command)
+                        .real_if("failed_at_s", failed_at_s);
                 }
                 paces.push(Pace {
                     flight: name,

@@ -10,7 +10,9 @@ use super::progress::Progress;
 use super::status::Status;
 use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, cautions};
+use crate::results::extent::Extent;
 use crate::simulation::{RunOptions, SimulationError, Times, threads};
+use crate::util::memory;
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -117,6 +119,9 @@ pub fn merge(
                 what,
             });
         }
+    }
+    if let Some(memory) = memory::available() {
+        Extent::of(&campaign).fits(&campaign, memory)?;
     }
     let out = OutputDir::claim(out, &campaign, merging.overwrite)?;
     let mut parts = Parts::gathered(dirs, &out, &campaign, plan)?;

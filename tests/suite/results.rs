@@ -1,6 +1,7 @@
 //! Every statistic of a run, against numbers worked out by hand.
 
 mod comparison;
+mod curves;
 mod dictionary;
 mod effect;
 mod fairness;

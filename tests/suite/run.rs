@@ -2,6 +2,7 @@
 
 mod cma_es;
 mod compare;
+mod detail;
 mod digests;
 mod shards;
 mod tune;

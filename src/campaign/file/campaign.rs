@@ -3,9 +3,9 @@
 
 use super::value::{some_table, table, tables};
 use super::{
-    AgentFile, ControlFile, CouplingFile, DisturbanceFile, FaultFile, InitialFile, ReferenceFile,
-    RequireFile, SamplingFile, StopFile, StratumFile, SynthesisFile, TimeFile, TuneFile,
-    VerdictFile,
+    AgentFile, ControlFile, CouplingFile, DisturbanceFile, FaultFile, InitialFile, OutputFile,
+    ReferenceFile, RequireFile, SamplingFile, StopFile, StratumFile, SynthesisFile, TimeFile,
+    TuneFile, VerdictFile,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -113,6 +113,9 @@ campaign_and_group! {
         /// When the run may end before its last episode (default: never).
         #[serde(default, deserialize_with = "some_table")]
         stop: Option<StopFile>,
+        /// What the run writes.
+        #[serde(default, deserialize_with = "some_table")]
+        output: Option<OutputFile>,
         /// Conditions on the result; one that does not hold makes the run exit with 4.
         #[serde(default, deserialize_with = "tables")]
         require: Vec<RequireFile>,

@@ -11,7 +11,9 @@ mod value;
 pub use campaign::{CampaignFile, GroupFile};
 pub use disturbances_and_faults::*;
 pub(super) use parameters::Parameters;
-pub use plan::{DesignFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile};
+pub use plan::{
+    DesignFile, OutputFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile,
+};
 pub use tune::{Texts, TuneFile};
 pub(super) use value::in_toml;
 pub use value::{

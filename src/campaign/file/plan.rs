@@ -1,6 +1,7 @@
-//! `[[strata]]`, `[sampling]`, `[stop]` and `[[require]]`: which episodes meet what, how their numbers are drawn, when
-//! enough is known, and what has to be.
+//! `[[strata]]`, `[sampling]`, `[stop]`, `[output]` and `[[require]]`: which episodes meet what, how their numbers are
+//! drawn, when enough is known, what is written, and what has to be.
 
+use super::super::plan::Detail;
 use super::value::some_word;
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
@@ -60,6 +61,16 @@ pub struct StopFile {
     pub confidence: Option<f64>,
     /// Episodes between two looks (default 64).
     pub every: Option<u32>,
+}
+
+/// `[output]`: what the run writes.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputFile {
+    /// Which of the tables that grow with the episodes (default "all"): "episodes" leaves out those of channels, faults
+    /// and conditions, "summary" all four.
+    #[serde(default)]
+    pub detail: Detail,
 }
 
 /// `[[require]]`: a limit that has to be proved, with 95 % confidence where chance is in it.

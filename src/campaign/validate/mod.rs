@@ -64,6 +64,11 @@ pub(super) fn validate(
         text: source.text.to_string(),
         overlay: source.overlay.to_vec(),
         requirements: Vec::new(),
+        detail: file
+            .output
+            .as_ref()
+            .map(|own| own.detail)
+            .unwrap_or_default(),
         stop: check.stop(&file, &controllers, sampling)?,
         description: check.description(file.description.as_deref())?,
         name: file.name,

@@ -1,12 +1,12 @@
 //! Which conditions matter, what was drawn, and the worst episodes.
 
 use crate::campaign::AgentGroup;
-use crate::draw::draw;
-use crate::draw::quantities::{conditions, title};
+use crate::draw::quantities::{Quantity, Source, quantities, title};
+use crate::draw::{AgentDraw, draw};
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::{RunData, whole};
-use crate::results::sensitivity::by_chance;
+use crate::results::curves::BAND;
 use crate::run::replay::command;
 use crate::run::table_reader::TableReader;
 use crate::statistics::SIGNIFICANCE;
@@ -19,8 +19,8 @@ const MOST: usize = 6;
 const WORST: f64 = 3.0;
 /// Controllers of which more than these are listed: worst.csv has all.
 const MOST_LISTED: usize = 12;
-/// Groups of episodes, from the lowest to the highest value of a condition.
-const BINS: usize = 10;
+/// Episodes whose draws are made again, at most.
+const MOST_DRAWN: u32 = 4096;
 
 /// What each drawn quantity does to failures and errors.
 pub(crate) fn ranking(data: &RunData) -> Section {
@@ -42,7 +42,6 @@ pub(crate) fn ranking(data: &RunData) -> Section {
         "episodes",
     ]);
     let mut of_ratios = grid.clone();
-    let mut strongest: Option<(String, String)> = None;
     let mut listed: BTreeMap<String, usize> = BTreeMap::new();
     for row in 0..table.rows() {
         let text = |name: &str| table.text(row, name);
@@ -56,9 +55,6 @@ pub(crate) fn ranking(data: &RunData) -> Section {
         *before += 1;
         if *before > MOST {
             continue;
-        }
-        if strongest.is_none() && text("target") == "rmse" {
-            strongest = Some((text("condition").into(), text("group").into()));
         }
         let ends = [
             table.real(row, "trend_lower"),
@@ -95,9 +91,7 @@ pub(crate) fn ranking(data: &RunData) -> Section {
             ],
         ));
     }
-    if let Some((condition, group)) = strongest {
-        blocks.extend(bands(data, &condition, &group).map(Block::Figure));
-    }
+    blocks.extend(bands(data).map(Block::Figure));
     Section::new("Which conditions matter", blocks)
 }
 
@@ -144,50 +138,27 @@ fn explained(data: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
     blocks
 }
 
-/// Quantile bands of the RMS error over a condition.
-fn bands(data: &RunData, condition: &str, group: &str) -> Option<Figure> {
-    let met = sizes(data, condition);
-    let roles = data.campaign.channel_groups();
-    let of = roles.iter().find(|own| *own.name == *group)?;
-    let column = format!("rmse_{}", of.role.name());
-    let agents = &data.campaign.groups()[of.group];
-    let errors = data.of_teams(&data.episodes, agents, &column, |_| true);
-    let mut order: Vec<usize> = (0..met.len()).filter(|&k| met[k].is_finite()).collect();
-    order.sort_by(|&a, &b| met[a].total_cmp(&met[b]));
-    if order.len() < 5 * BINS {
-        return None;
-    }
-    // Of a count, whose values are few, all episodes with the same belong together.
-    let by_value = || order.chunk_by(|&a, &b| met[a].total_cmp(&met[b]).is_eq());
-    let few = by_value().count() <= BINS;
-    let bins: Vec<&[usize]> = match few {
-        true => by_value().collect(),
-        false => order.chunks(order.len().div_ceil(BINS)).collect(),
-    };
-    let groups = match few {
-        true => "at each value".to_string(),
-        false => format!("in {BINS} groups of equally many episodes"),
-    };
-    let mut marks = Vec::new();
-    for (index, errors) in errors.iter().enumerate() {
-        let (mut band, mut line) = (Vec::new(), Vec::new());
-        for bin in &bins {
-            let middle = met[bin[bin.len() / 2]];
-            let mut of_bin: Vec<f64> = bin.iter().filter_map(|&k| errors.get(k).copied()).collect();
-            of_bin.sort_by(f64::total_cmp);
-            let quantile = |q: f64| {
-                let place = whole((q * of_bin.len() as f64).floor());
-                of_bin
-                    .get(place.min(of_bin.len().saturating_sub(1)))
-                    .copied()
-                    .unwrap_or(f64::NAN)
-            };
-            band.push((middle, quantile(0.05), quantile(0.95)));
-            line.push((middle, quantile(0.5)));
-        }
-        marks.push(Mark::Band(band, Color::Series(index)));
-        marks.push(Mark::Line(line, Color::Series(index), Stroke::Solid));
-    }
+/// Quantile bands of the RMS error over the condition that moves it most.
+fn bands(data: &RunData) -> Option<Figure> {
+    let table = &data.curves;
+    let curves = data.curves(BAND, None);
+    let first = *curves.iter().flatten().next()?;
+    let [condition, group] = ["condition", "group"].map(|name| table.text(first, name));
+    let groups = data.campaign.channel_groups();
+    let of = groups.iter().find(|own| *own.name == *group)?;
+    let marks = curves.iter().enumerate().flat_map(|(index, rows)| {
+        let point = |row: &usize, name: &str| table.real(*row, name);
+        let between = |row: &usize| (point(row, "y_lower"), point(row, "y_upper"));
+        let band = rows.iter().map(|row| {
+            let (lower, upper) = between(row);
+            (point(row, "x"), lower, upper)
+        });
+        let line = rows.iter().map(|row| (point(row, "x"), point(row, "y")));
+        [
+            Mark::Band(band.collect(), Color::Series(index)),
+            Mark::Line(line.collect(), Color::Series(index), Stroke::Solid),
+        ]
+    });
     let name = title(&data.campaign, condition);
     Some(Figure {
         panels: vec![Plot {
@@ -197,38 +168,18 @@ fn bands(data: &RunData, condition: &str, group: &str) -> Option<Figure> {
                 logarithmic: true,
                 ..Axis::new(format!("RMS error, {}", of.role.unit()))
             },
-            marks,
+            marks: marks.collect(),
             ..Plot::default()
         }],
         legend: data.legend(),
         caption: format!(
-            "RMS error over {name}: median and the band from the 5th to the 95th percentile, {groups}. A band is left out where \
-             its end diverges."
+            "RMS error over {name}: median and the band from the 5th to the 95th percentile, of groups of equally many \
+             episodes or, where it has few values, at each of them. A band is left out where its end diverges."
         ),
     })
 }
 
-/// The size of a condition in each episode where it was left to chance, as the ranking takes it: drawn anew, NaN where
-/// it does not apply.
-fn sizes(data: &RunData, condition: &str) -> Vec<f64> {
-    let campaign = &data.campaign;
-    let all = conditions(campaign);
-    let measured = all.iter().find(|own| own.key == condition);
-    let size = |episode| {
-        let groups = campaign.groups().iter();
-        let applied = groups.map(|group| draw(group, episode).applied(group));
-        let size = measured.and_then(|own| own.of(&applied.collect::<Vec<_>>()));
-        size.unwrap_or(f64::NAN)
-    };
-    let sizes: Vec<f64> = (0..data.manifest.episodes).map(size).collect();
-    let drawn = by_chance(campaign, condition, &sizes);
-    drawn
-        .into_iter()
-        .map(|size| size.unwrap_or(f64::NAN))
-        .collect()
-}
-
-/// The ranges that were really drawn.
+/// The ranges that were really drawn: drawn again.
 pub(crate) fn drawn(data: &RunData) -> Section {
     let mut grid = Grid::new([
         "condition",
@@ -239,17 +190,35 @@ pub(crate) fn drawn(data: &RunData) -> Section {
         "95th percentile",
         "highest",
     ]);
+    let all = data.manifest.episodes;
+    let stride = all.div_ceil(MOST_DRAWN).max(1);
+    let episodes = (0..all).step_by(stride as usize);
+    let which = match stride {
+        1 => "all episodes".to_string(),
+        _ => format!("every {stride}th episode"),
+    };
     for group in data.campaign.groups() {
-        for (quantity, columns) in columns_of(data, group) {
-            grid.rows.extend(range(data, group, &quantity, &columns));
+        let draws = episodes
+            .clone()
+            .flat_map(|episode| draw(group, episode).applied(group).agents);
+        let draws: Vec<AgentDraw> = draws.collect();
+        let mut fault = None;
+        for quantity in quantities(group) {
+            if let Source::Fault(index) = quantity.source
+                && fault != Some(index)
+            {
+                fault = Some(index);
+                grid.rows.push(share(data, group, index, &draws));
+            }
+            grid.rows.extend(range(data, group, &quantity, &draws));
         }
     }
     Section::new(
         "Conditions really drawn",
         vec![
-            Block::text(
-                "As applied, over all episodes, agents and the channels on which they act.",
-            ),
+            Block::text(format!(
+                "As applied, over {which}, agents and the channels on which they act."
+            )),
             Block::Folded(
                 format!("{} quantities", grid.rows.len()),
                 vec![Block::Grid(grid)],
@@ -258,60 +227,47 @@ pub(crate) fn drawn(data: &RunData) -> Section {
     )
 }
 
-/// The quantities that are drawn for a group of agents, with their columns: those that differ in the channel belong
-/// together.
-fn columns_of<'a>(data: &'a RunData, group: &AgentGroup) -> Vec<(String, Vec<&'a String>)> {
-    let names = data.episodes.names();
-    let begin = names.iter().position(|name| name == "mass_scale");
-    let mut quantities: Vec<(String, Vec<&String>)> = Vec::new();
-    for column in names.iter().skip(begin.unwrap_or(usize::MAX)) {
-        let mut channels = group.channels().iter();
-        let quantity = channels
-            .find_map(|channel| column.strip_suffix(&format!("_{channel}")))
-            .unwrap_or(column);
-        match quantities.last_mut().filter(|(own, _)| own == quantity) {
-            Some((_, columns)) => columns.push(column),
-            None => quantities.push((quantity.to_string(), vec![column])),
-        }
-    }
-    quantities
+/// How many agents have a fault of their group.
+fn share(data: &RunData, group: &AgentGroup, index: usize, draws: &[AgentDraw]) -> Vec<Cell> {
+    let having = draws
+        .iter()
+        .filter(|own| own.faults[index].occurs())
+        .count();
+    let name = title(
+        &data.campaign,
+        &format!("fault{}_occurs", group.first_fault + index),
+    );
+    let name = name.strip_suffix(" occurs").unwrap_or(&name);
+    let mut row = vec![
+        Cell::text(format!("{name}: share of agents that have it")),
+        Cell::number(draws.len().to_string()),
+        Cell::number(format::rate(
+            having as f64 / draws.len().max(1) as f64,
+            None,
+        )),
+    ];
+    row.resize(7, Cell::number(""));
+    row
 }
 
-/// The range of a quantity of a group of agents; none where the group has no such quantity.
+/// The range of a quantity of a group of agents; none where nobody has it.
 fn range(
     data: &RunData,
     group: &AgentGroup,
-    quantity: &str,
-    columns: &[&String],
+    quantity: &Quantity,
+    draws: &[AgentDraw],
 ) -> Option<Vec<Cell>> {
-    let table = &data.episodes;
-    let wanted = [
-        ("controller", &*data.campaign.controllers[0]),
-        ("group", &group.name),
-    ];
-    let cells = table
-        .find(&wanted)
-        .flat_map(|row| columns.iter().map(move |column| table.real(row, column)));
+    let cells = draws.iter().flat_map(|draw| quantity.cells(draw));
     let mut values: Vec<f64> = cells.filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     if values.is_empty() {
         return None;
     }
-    let name = match title(&data.campaign, quantity) {
+    let name = match title(&data.campaign, &quantity.key) {
         // What is numbered through all groups has the name of its group already.
-        plain if plain == quantity => group.titled(quantity),
+        plain if plain == quantity.key => group.titled(&quantity.key),
         titled => titled,
     };
-    if let Some(flag) = name.strip_suffix(" occurs") {
-        let share = values.iter().sum::<f64>() / values.len() as f64;
-        let mut row = vec![
-            Cell::text(format!("{flag}: share of agents that have it")),
-            Cell::number(values.len().to_string()),
-            Cell::number(format::rate(share, None)),
-        ];
-        row.resize(7, Cell::number(""));
-        return Some(row);
-    }
     let at = |q: f64| {
         let place = whole((q * (values.len() - 1) as f64).round());
         Cell::number(format::number(values[place.min(values.len() - 1)]))

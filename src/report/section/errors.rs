@@ -5,6 +5,7 @@ use crate::campaign::ALL;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Section};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::RunData;
+use crate::results::curves::DISTRIBUTION;
 use crate::run::table_reader::TableReader;
 use crate::util::format;
 
@@ -175,19 +176,19 @@ pub(crate) fn distributions(data: &RunData) -> Section {
     let roles = data.campaign.channel_groups();
     let groups = roles.iter().map(|of| {
         let group = &data.campaign.groups()[of.group];
-        let column = format!("rmse_{}", of.role.name());
-        let values = data.of_teams(&data.episodes, group, &column, |_| true);
         let limit = group.verdict.max_rmse[of.channels.start];
-        ecdf(&of.name, of.role, limit, &values)
+        ecdf(data, &of.name, of.role, limit)
     });
     let channels = roles.iter().flat_map(|of| {
         let group = &data.campaign.groups()[of.group];
         of.channels.clone().map(move |channel| {
-            let (sheet, name) = (&data.channels, &group.channels()[channel]);
-            let of_channel = |row: usize| sheet.text(row, "channel") == &**name;
-            let values = data.of_teams(sheet, group, "rmse", of_channel);
             let limit = group.verdict.max_rmse[channel];
-            ecdf(&group.titled(name), of.role, limit, &values)
+            ecdf(
+                data,
+                &group.titled(&group.channels()[channel]),
+                of.role,
+                limit,
+            )
         })
     });
     let figure = |panels: Vec<Plot>, of: &str| Figure {
@@ -217,35 +218,38 @@ pub(crate) fn distributions(data: &RunData) -> Section {
 /// episodes that are about to diverge would leave no room for the others.
 const FRAME: f64 = 20.0;
 
-/// The empirical distribution of values by controller.
-fn ecdf(title: &str, role: ChannelRole, limit: f64, values: &[Vec<f64>]) -> Plot {
-    let medians = values.iter().map(|values| {
-        let mut sorted = values.clone();
-        sorted.sort_by(f64::total_cmp);
-        sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+/// The empirical distribution of the errors on some channels by controller.
+fn ecdf(data: &RunData, title: &str, role: ChannelRole, limit: f64) -> Plot {
+    let curves = data.curves(DISTRIBUTION, Some(title));
+    let point = |row: &usize| (data.curves.real(*row, "x"), data.curves.real(*row, "y"));
+    let curves = curves.iter().map(|rows| rows.iter().map(point).collect());
+    let curves: Vec<Vec<(f64, f64)>> = curves.collect();
+    let medians = curves.iter().filter_map(|points| {
+        let (median, _) = points.iter().find(|(_, share)| *share > 0.5)?;
+        Some(*median)
     });
-    let largest = medians
-        .filter(|median| median.is_finite())
-        .fold(0.0, f64::max);
+    let largest = medians.fold(0.0, f64::max);
     let limit = if limit.is_finite() { limit } else { 0.0 };
     let frame = (FRAME * largest).max(2.0 * limit);
-    let marks = values.iter().enumerate().map(|(index, values)| {
-        let mut sorted = values.clone();
-        sorted.sort_by(f64::total_cmp);
-        let n = sorted.len().max(1);
-        let stride = n.div_ceil(MOST_POINTS);
-        let within = sorted.iter().take_while(|value| **value <= frame).count();
+    let marks = curves.iter().enumerate().map(|(index, points)| {
+        let stride = points.len().div_ceil(MOST_POINTS).max(1);
+        let within = points
+            .iter()
+            .take_while(|(value, _)| *value <= frame)
+            .count();
         // The last that is within the frame tells how many are.
         let kept = (0..within).filter(|place| place % stride == 0 || place + 1 == within);
-        let points = kept.map(|place| (sorted[place], (place + 1) as f64 / n as f64));
+        let kept = kept.map(|place| points[place]);
         // The curve goes on as a line to the end of the frame, beyond which the rest lies.
-        let end = points
-            .clone()
-            .next_back()
-            .filter(|_| within < n)
+        let end = kept.clone().next_back();
+        let end = end
+            .filter(|(_, share)| *share < 1.0)
             .map(|(_, share)| (frame, share));
-        let points = points.chain(end);
-        Mark::Line(points.collect(), Color::Series(index), Stroke::Steps)
+        Mark::Line(
+            kept.chain(end).collect(),
+            Color::Series(index),
+            Stroke::Steps,
+        )
     });
     Plot {
         title: title.into(),

@@ -5,8 +5,9 @@ use crate::report::notes::caveats;
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::requirements::bound;
-use crate::report::run_data::{RunData, whole};
+use crate::report::run_data::RunData;
 use crate::results::RateMethod;
+use crate::results::curves::SURVIVAL;
 use crate::util::format::{self, sentence};
 
 /// Failure rates with intervals, requirements, and the share of episodes still good over time.
@@ -174,46 +175,23 @@ fn requirements(data: &RunData) -> Grid {
 /// The share of episodes that have not failed yet, over time.
 fn survival(data: &RunData) -> Figure {
     let campaign = &data.campaign;
-    let episodes = data.manifest.episodes as usize;
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
-    let mut failed_at = vec![vec![f64::INFINITY; episodes]; campaign.controllers.len()];
-    let table = &data.episodes;
-    for row in 0..table.rows() {
-        let controller = data.controller(table.text(row, "controller"));
-        let place = controller.and_then(|index| {
-            failed_at
-                .get_mut(index)?
-                .get_mut(whole(table.real(row, "episode")))
-        });
-        let Some(first) = place else { continue };
-        let time_s = table.real(row, "failed_at_s");
-        if time_s.is_finite() {
-            *first = first.min(time_s);
-        } else if table.text(row, "status") != "ok" {
-            // The RMS error is judged at the end.
-            *first = first.min(end_s);
-        }
-    }
-    let most = failed_at.iter().map(|times| {
-        let failed = times.iter().filter(|time_s| time_s.is_finite()).count();
-        failed as f64 / episodes.max(1) as f64
+    let curves = data.curves(SURVIVAL, None);
+    let point = |row: &usize| (data.curves.real(*row, "x"), data.curves.real(*row, "y"));
+    let lines = curves.iter().map(|rows| {
+        let begin = std::iter::once((0.0, 1.0));
+        begin.chain(rows.iter().map(point)).collect()
     });
-    let most = most.fold(0.0, f64::max);
+    let lines: Vec<Vec<(f64, f64)>> = lines.collect();
+    let left = |line: &Vec<(f64, f64)>| line.last().map_or(1.0, |point| point.1);
+    let most = lines
+        .iter()
+        .map(|line| 1.0 - left(line))
+        .fold(0.0, f64::max);
     // A little room below, so that the labels of both axes do not meet in the corner; cut to what there is to see.
     let range = Some((1.0 - 1.1 * most.max(0.01), 1.0 + 0.03 * most.max(0.01)));
-    let marks = failed_at.iter().enumerate().map(|(index, times)| {
-        let mut times: Vec<f64> = times.iter().copied().filter(|t| t.is_finite()).collect();
-        times.sort_by(f64::total_cmp);
-        let mut line = vec![(0.0, 1.0)];
-        let all = episodes.max(1) as f64;
-        for (place, &time_s) in times.iter().enumerate() {
-            // Of those that fail at once, the last tells how many are left.
-            if times.get(place + 1) != Some(&time_s) {
-                line.push((time_s, 1.0 - (place + 1) as f64 / all));
-            }
-        }
-        let last = line.last().map_or(1.0, |point| point.1);
-        line.push((end_s, last));
+    let marks = lines.into_iter().enumerate().map(|(index, mut line)| {
+        line.push((end_s, left(&line)));
         Mark::Line(line, Color::Series(index), Stroke::Steps)
     });
     Figure {

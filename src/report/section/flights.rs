@@ -40,7 +40,7 @@ fn figure(data: &RunData, name: &str, episode: usize) -> Figure {
     let flight = Flight {
         data,
         name,
-        failed_at_s: failures(data, episode),
+        failed_at_s: failures(data, name),
     };
     let groups = data.campaign.channel_groups();
     let errors = groups.iter().map(|of| {
@@ -113,19 +113,19 @@ impl Flight<'_> {
     }
 }
 
-/// When the episode failed under each controller, s; infinite where it did not.
-fn failures(data: &RunData, episode: usize) -> Vec<f64> {
-    let table = &data.episodes;
-    let mut failed_at_s = vec![f64::INFINITY; data.campaign.controllers.len()];
-    let of_episode = |row: &usize| whole(table.real(*row, "episode")) == episode;
-    for row in (0..table.rows()).filter(of_episode) {
-        let controller = data.controller(table.text(row, "controller"));
-        let time_s = table.real(row, "failed_at_s");
-        if let Some(own) = controller.and_then(|index| failed_at_s.get_mut(index))
-            && time_s.is_finite()
-        {
-            *own = own.min(time_s);
-        }
-    }
-    failed_at_s
+/// When the flight failed under each controller, s; infinite where it did not.
+fn failures(data: &RunData, flight: &str) -> Vec<f64> {
+    let of_controller = |name: &String| {
+        let wanted = [("flight", flight), ("controller", name)];
+        let row = data.flights.find(&wanted).next();
+        let time_s = row.map(|row| data.flights.real(row, "failed_at_s"));
+        time_s
+            .filter(|own| own.is_finite())
+            .unwrap_or(f64::INFINITY)
+    };
+    data.campaign
+        .controllers
+        .iter()
+        .map(of_controller)
+        .collect()
 }

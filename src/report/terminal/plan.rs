@@ -3,17 +3,20 @@
 use super::drawn::{drawn, drawn_json};
 use super::effort::{lasting, seconds, steps};
 use crate::campaign::lints::cautions;
-use crate::campaign::{Campaign, Fault, Goal, Stratum, StratumFaults};
+use crate::campaign::{Campaign, Detail, Fault, Goal, Stratum, StratumFaults};
 use crate::controllers::{self, GainSet};
 use crate::report::page::document::{Block, Document, Section};
 use crate::report::page::text::text;
+use crate::results::extent::Extent;
+use crate::util::format::bytes;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Columns of a wrapped line.
 const WIDTH: usize = 96;
 
 /// What a campaign would do.
-pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
+pub fn plan(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> String {
     let mut lead = vec![
         format!(
             "{} episodes of {} over {} s in steps of {} s, seed {}",
@@ -31,6 +34,7 @@ pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
             lasting(seconds(campaign))
         ),
     ];
+    lead.push(room(campaign, extent));
     lead.extend(design(campaign).iter().map(|sentence| wrapped(sentence)));
     for (index, name) in campaign.controllers.iter().enumerate() {
         let of_groups = gains.iter().map(|gains| &gains.controllers[index]);
@@ -56,6 +60,25 @@ pub fn plan(campaign: &Campaign, gains: &[GainSet]) -> String {
         sections: vec![drawn(campaign), Section::new("", cautions.collect())],
         ..Document::default()
     })
+}
+
+/// How much room the results take in each detail.
+fn room(campaign: &Campaign, extent: Extent) -> String {
+    let of_detail = |(detail, size): (Detail, u64)| {
+        let mark = if detail == campaign.detail {
+            ", as it is"
+        } else {
+            ""
+        };
+        format!("{} in detail {:?}{mark}", bytes(size), detail.word())
+    };
+    let details = Detail::ALL.into_iter().zip(extent.tables);
+    let details: Vec<String> = details.skip(1).map(of_detail).collect();
+    wrapped(&format!(
+        "large tables: about {}, none in \"summary\"; memory for the statistics: about {}",
+        details.join(", "),
+        bytes(extent.memory)
+    ))
 }
 
 /// How the episodes are divided, drawn and ended, where that is not as usual.
@@ -172,8 +195,10 @@ fn wrapped(sentence: &str) -> String {
 }
 
 /// [`plan`] for programs.
-pub fn plan_json(campaign: &Campaign, gains: &[GainSet]) -> Value {
+pub fn plan_json(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> Value {
     let notes = [cautions(campaign), controllers::cautions(campaign, gains)].concat();
+    let sizes = Detail::ALL.iter().zip(extent.tables);
+    let sizes: BTreeMap<&str, u64> = sizes.map(|(own, size)| (own.word(), size)).collect();
     json!({
         "name": campaign.name, "episodes": campaign.episodes, "team": campaign.agents(), "seed": campaign.seed,
         "groups": campaign.groups().iter().map(|group| json!({
@@ -186,6 +211,7 @@ pub fn plan_json(campaign: &Campaign, gains: &[GainSet]) -> Value {
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
         "drawn": drawn_json(campaign),
         "roughly_s": seconds(campaign),
+        "large_tables_bytes": sizes, "detail": campaign.detail.word(), "memory_bytes": extent.memory,
         "notes": notes,
     })
 }

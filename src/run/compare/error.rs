@@ -18,6 +18,17 @@ pub enum CompareError {
     /// A run's gains cannot be read any more.
     #[error(transparent)]
     Gains(#[from] GainsError),
+    /// A run did not write what a comparison reads.
+    #[error(
+        "{}: has not all tables ([output] detail = \"{detail}\"), and runs are compared by those of episodes and \
+         channels: fly it again with --set output.detail=all", path.display()
+    )]
+    Detail {
+        /// Its directory.
+        path: PathBuf,
+        /// What it wrote.
+        detail: &'static str,
+    },
     /// The runs did not meet the same.
     #[error(
         "{} and {} differ in {}; episodes can be compared pair by pair only where both runs met the same: run one of \

@@ -10,7 +10,7 @@ pub use files::{claim, write};
 use super::manifest::Manifest;
 use super::scores_of_run::scores_of_run;
 use super::table_reader::TableReader;
-use crate::campaign::{ALL, Campaign, Compared, Requirement};
+use crate::campaign::{ALL, Campaign, Compared, Detail, Requirement};
 use crate::controllers::GainSet;
 use crate::results::scores::Scores;
 use crate::results::{
@@ -115,6 +115,12 @@ impl ReadRun {
     fn read(path: &Path) -> Result<Self, CompareError> {
         let manifest = Manifest::read_verified(path)?;
         let campaign = manifest.campaign()?;
+        if campaign.detail != Detail::All {
+            return Err(CompareError::Detail {
+                path: path.to_path_buf(),
+                detail: campaign.detail.word(),
+            });
+        }
         let gains = GainSet::read(&campaign, &path.join("gains.json"))?;
         let table = |name: &str| {
             let table = TableReader::read(path, name, |_| true)?;

@@ -174,6 +174,8 @@ fn same_bytes(campaign: &Campaign) {
             "comparison.parquet",
             "conditions.csv",
             "conditions.parquet",
+            "curves.csv",
+            "curves.parquet",
             "episodes.csv",
             "episodes.parquet",
             "fairness.csv",

@@ -9,11 +9,13 @@ use std::time::Duration;
 
 const RUN: [&str; 4] = ["run", "c.toml", "--out", "out"];
 /// What every run writes.
-const FILES: [&str; 20] = [
+const FILES: [&str; 22] = [
     "channels.parquet",
     "comparison.csv",
     "comparison.parquet",
     "conditions.parquet",
+    "curves.csv",
+    "curves.parquet",
     "episodes.parquet",
     "fairness.csv",
     "fairness.parquet",

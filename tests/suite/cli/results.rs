@@ -9,21 +9,38 @@ use std::fs;
 fn check_shows_what_would_be_drawn_and_simulates_and_writes_nothing() {
     let place = Place::smoke(&[]);
     let before = place.everything();
-    // So many episodes would take days.
-    let many = ["--episodes", "4000000000"];
+    // So many episodes would take an hour.
+    let many = ["--episodes", "2000000"];
     let text = place.succeeds(&[&["check", "c.toml"], &many as &[&str]].concat());
     for word in [
-        "4000000000 episodes of 3 UAVs",
+        "2000000 episodes of 3 UAVs",
+        "large tables: about ",
+        "in detail \"episodes\", ",
+        "memory for the statistics: about ",
         "ftc, pid, pid-tuned",
         "certified rho",
         "mass_scale",
         "fault[0] actuator loss-of-effectiveness, in ",
-        " days on one core",
+        " minutes on one core",
     ] {
         assert!(text.contains(word), "{word:?} is missing from: {text}");
     }
     let plan = place.json(&[&["check", "c.toml", "--json"], &many as &[&str]].concat());
-    assert_eq!(plan["episodes"], 4_000_000_000_u64);
+    assert_eq!(plan["episodes"], 2_000_000);
+    let sizes = &plan["large_tables_bytes"];
+    assert_eq!(
+        (&plan["detail"], &sizes["summary"]),
+        (&"all".into(), &0.into())
+    );
+    assert!(sizes["episodes"].as_u64() < sizes["all"].as_u64());
+    // More than any machine holds is refused, before anything else.
+    let refused = place.program(&["check", "c.toml", "--episodes", "4000000000"]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains("episodes (line 4) = 4000000000: "),
+        "{}",
+        refused.stderr
+    );
     let range = |name: &str| {
         let drawn = plan["drawn"].as_array().unwrap().iter();
         let found = drawn.clone().find(|row| row["name"] == name).unwrap();

@@ -1,0 +1,136 @@
+//! Which of its large tables a run writes.
+
+use crate::common::altered;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use urts_mc::backend::cpu::Precision;
+use urts_mc::campaign::Detail;
+use urts_mc::report::{Length, report};
+use urts_mc::results::extent::Extent;
+use urts_mc::run::compare::{Asked, compare_runs};
+use urts_mc::run::directory::OutputDir;
+use urts_mc::run::{Extras, run};
+use urts_mc::simulation::RunOptions;
+
+/// Runs short flights with a detail.
+fn flown(dir: &Path, detail: Detail) -> PathBuf {
+    let detail = format!("output.detail={}", detail.word());
+    let campaign = altered("smoke", &[&detail, "episodes=60"]);
+    let out = OutputDir::claim(&dir.join(detail), &campaign, false).unwrap();
+    let options = RunOptions::cpu(Precision::F32);
+    run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
+    report(out.path(), Length::Full).unwrap();
+    out.path().to_path_buf()
+}
+
+fn files(dir: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(dir).unwrap();
+    entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+#[test]
+fn what_a_detail_leaves_out_changes_nothing_else() {
+    let dir = tempfile::tempdir().unwrap();
+    let [summary, episodes, all] = Detail::ALL.map(|detail| flown(dir.path(), detail));
+    let names = |names: &[&str]| {
+        let names = names.iter().map(|name| format!("{name}.parquet"));
+        names.collect::<BTreeSet<String>>()
+    };
+    let missing = |from: &Path| -> BTreeSet<String> {
+        files(&all).difference(&files(from)).cloned().collect()
+    };
+    let others = ["channels", "faults", "conditions"];
+    assert_eq!(missing(&episodes), names(&others));
+    assert_eq!(
+        missing(&summary),
+        names(&[&others[..], &["episodes"]].concat())
+    );
+    let mut compared = 0;
+    for name in files(&all).iter().filter(|name| name.ends_with(".csv")) {
+        let of = |dir: &Path| fs::read(dir.join(name)).unwrap();
+        assert!(
+            of(&summary) == of(&all) && of(&episodes) == of(&all),
+            "{name}"
+        );
+        compared += 1;
+    }
+    assert_eq!(compared, 7);
+    // The reports differ in the hash and the text of the campaign alone.
+    let figures = |dir: &Path| {
+        let html = fs::read_to_string(dir.join("report.html")).unwrap();
+        let figures = html.split("<svg").skip(1);
+        let figures = figures.map(|rest| rest.split("</svg>").next().unwrap().to_string());
+        figures.collect::<Vec<String>>()
+    };
+    assert!(figures(&all).len() > 5);
+    assert_eq!(figures(&summary), figures(&all));
+    let refused = compare_runs(&all, &summary, &Asked::default()).unwrap_err();
+    let said = refused.to_string();
+    for part in ["[output] detail = \"summary\"", "--set output.detail=all"] {
+        assert!(said.contains(part), "{said}");
+    }
+}
+
+#[test]
+fn the_size_of_large_tables_is_told_to_within_a_half() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, changes) in [
+        (
+            "uav-paper",
+            &["episodes=500", "time.duration_s=3.0", "time.settle_s=0.5"][..],
+        ),
+        (
+            "biped-paper",
+            &["episodes=200", "time.duration_s=1.0", "time.settle_s=0.2"],
+        ),
+    ] {
+        let short = [changes, &["fault.0.onset_s=0.6"]].concat();
+        let campaign = altered(name, if name == "uav-paper" { &short } else { changes });
+        let out = OutputDir::claim(&dir.path().join(name), &campaign, false).unwrap();
+        let options = RunOptions::cpu(Precision::F32);
+        run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
+        let size = |table: &str| {
+            let path = out.path().join(format!("{table}.parquet"));
+            fs::metadata(path).map_or(0, |own| own.len()) as f64
+        };
+        let episodes = size("episodes");
+        let others = ["channels", "faults", "conditions"].map(size);
+        let told = Extent::of(&campaign).tables.map(|own| own as f64);
+        assert_eq!(told[0], 0.0);
+        for (told, found) in [
+            (told[1], episodes),
+            (told[2], episodes + others.iter().sum::<f64>()),
+        ] {
+            assert!(
+                (0.67..1.5).contains(&(told / found)),
+                "{name}: {told} {found}"
+            );
+        }
+    }
+}
+
+#[test]
+fn more_episodes_than_memory_holds_are_refused_with_how_many_it_does() {
+    let campaign = altered("smoke", &["episodes=4000000000"]);
+    let extent = Extent::of(&campaign);
+    let refused = extent
+        .fits(&campaign, 16_000_000_000)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("episodes") && refused.contains("4000000000"),
+        "{refused}"
+    );
+    let fitting = refused.split("give ").nth(1).unwrap();
+    let fitting: u32 = fitting.split(' ').next().unwrap().parse().unwrap();
+    let fits = |episodes: u32| {
+        let campaign = altered("smoke", &[&format!("episodes={episodes}")]);
+        Extent::of(&campaign).fits(&campaign, 16_000_000_000)
+    };
+    assert!(fitting > 1_000_000);
+    fits(fitting - fitting / 1000).unwrap();
+    assert!(fits(fitting + fitting / 100).is_err());
+}
