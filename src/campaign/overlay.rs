@@ -149,6 +149,11 @@ impl Setting {
         &self.written
     }
 
+    /// The table or key at the top of the file that it changes.
+    pub(crate) fn table(&self) -> &str {
+        self.steps.first().map_or("", |step| &step.name)
+    }
+
     /// The value; none removes the key.
     fn value(&self) -> Result<Option<DeValue<'_>>, SettingError> {
         let text = self.written[self.value..].trim();

@@ -6,7 +6,7 @@ use super::failure::RunError;
 use super::findings::Findings;
 use super::flights::flights;
 use super::integrity::records;
-use super::manifest::{GIT_REVISION, Manifest};
+use super::manifest::{GIT_REVISION, Manifest, campaign_hash};
 use super::parts::Parts;
 use super::progress::Progress;
 use super::staging::Staging;
@@ -21,7 +21,6 @@ use crate::results::flights::Flights;
 use crate::results::scores::Scores;
 use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::{Segment, Times};
-use crate::util::json::pretty;
 use rayon::ThreadPool;
 use std::time::Instant;
 
@@ -88,7 +87,7 @@ impl Conclusion<'_> {
             version: env!("CARGO_PKG_VERSION").to_string(),
             git_revision: GIT_REVISION.map(String::from),
             campaign_path: plan.campaign_path.clone(),
-            campaign_blake3: plan.campaign_blake3.clone(),
+            campaign_blake3: campaign_hash(campaign),
             campaign: plan.campaign.clone(),
             overlay: plan.overlay.clone(),
             robot: robots.remove(""),
@@ -110,8 +109,9 @@ impl Conclusion<'_> {
             cross_check,
             cross_check_missing,
             times,
+            blake3: None,
         };
-        staging.files().write(MANIFEST, &pretty(&manifest)?)?;
+        staging.files().write(MANIFEST, &manifest.to_file()?)?;
         staging.commit()?;
         Ok(Findings { results, manifest })
     }

@@ -8,6 +8,7 @@ use crate::results::RequirementResult;
 use crate::simulation::cross_check::CrossCheck;
 use crate::simulation::stopping::Stopped;
 use crate::simulation::{Segment, Times};
+use crate::util::json::pretty;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -77,6 +78,9 @@ pub struct Manifest {
     pub harm: Vec<String>,
     /// Wall-clock times.
     pub times: Times,
+    /// BLAKE3 hash of the file of all this, but for the hash itself; none in runs of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blake3: Option<String>,
 }
 
 /// The source revision that this program was built from.
@@ -89,7 +93,16 @@ pub fn campaign_hash(campaign: &Campaign) -> String {
     hash_of(&campaign.text, &campaign.overlay)
 }
 
-fn hash_of(text: &str, overlay: &[Setting]) -> String {
+/// The same without the settings of `[output]`: what is written changes nothing in what is flown.
+pub(super) fn flown_hash(campaign: &Campaign) -> String {
+    let settings = campaign.overlay.iter();
+    hash_of(
+        &campaign.text,
+        settings.filter(|own| own.table() != "output"),
+    )
+}
+
+fn hash_of<'a>(text: &str, overlay: impl IntoIterator<Item = &'a Setting>) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(text.as_bytes());
     for setting in overlay {
@@ -106,13 +119,20 @@ impl Manifest {
     /// # Errors
     /// If there is none or it is not one.
     pub fn read(dir: &Path) -> Result<Self, OutputError> {
+        Self::parsed(dir).map(|(manifest, _)| manifest)
+    }
+
+    /// The manifest of a run's directory, and the text of its file.
+    fn parsed(dir: &Path) -> Result<(Self, String), OutputError> {
         let no_run = |reason: String| OutputError::NoRun {
             path: dir.to_path_buf(),
             reason,
         };
         let text = std::fs::read_to_string(dir.join(MANIFEST))
             .map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
-        serde_json::from_str(&text).map_err(|error| no_run(format!("{MANIFEST}: {error}")))
+        let manifest = serde_json::from_str(&text);
+        let manifest = manifest.map_err(|error| no_run(format!("{MANIFEST}: {error}")))?;
+        Ok((manifest, text))
     }
 
     /// Reads the manifest of a run's directory, whose files have to be those that the run wrote.
@@ -120,15 +140,37 @@ impl Manifest {
     /// # Errors
     /// If there is none, it is not one, or its campaign or a file that it counts is missing or was changed.
     pub fn read_verified(dir: &Path) -> Result<Self, OutputError> {
-        let manifest = Self::read(dir)?;
+        let (manifest, text) = Self::parsed(dir)?;
+        let damaged = |reason: &str| OutputError::Damaged {
+            path: dir.join(MANIFEST),
+            reason: reason.to_string(),
+        };
         if hash_of(&manifest.campaign, &manifest.overlay) != manifest.campaign_blake3 {
-            return Err(OutputError::Damaged {
-                path: dir.join(MANIFEST),
-                reason: "the campaign in it was changed".to_string(),
-            });
+            return Err(damaged("the campaign in it was changed"));
+        }
+        if manifest
+            .blake3
+            .as_ref()
+            .is_some_and(|own| !is_hash_of(own, &text))
+        {
+            return Err(damaged("its content was changed"));
         }
         verify(dir, &manifest.files)?;
         Ok(manifest)
+    }
+
+    /// The text of its file, with the file's own hash.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub(super) fn to_file(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let without = Self {
+            blake3: Some(String::new()),
+            ..self.clone()
+        };
+        let without = String::from_utf8_lossy(&pretty(&without)?).into_owned();
+        let hash = blake3::hash(without.as_bytes()).to_hex();
+        Ok(with_hash(&without, "", &hash).into_bytes())
     }
 
     /// The campaign that was simulated, with the run's seed and the number of episodes that was asked for.
@@ -149,4 +191,17 @@ impl Manifest {
         )?;
         Ok(campaign.with_seed(self.seed))
     }
+}
+
+/// The text of a manifest with another hash in the place of its own, which is the last of its keys.
+fn with_hash(text: &str, own: &str, other: &str) -> String {
+    let entry = |hash: &str| format!("\"blake3\": \"{hash}\"");
+    let (before, after) = text.rsplit_once(&entry(own)).unwrap_or((text, ""));
+    format!("{before}{}{after}", entry(other))
+}
+
+/// Whether this is the hash of the text of a manifest.
+fn is_hash_of(hash: &str, text: &str) -> bool {
+    let without = with_hash(text, hash, "");
+    *blake3::hash(without.as_bytes()).to_hex() == *hash
 }

@@ -1,7 +1,7 @@
 //! What the parts of a directory are parts of.
 
 use super::super::integrity::inputs;
-use super::super::manifest::{GIT_REVISION, campaign_hash};
+use super::super::manifest::{GIT_REVISION, flown_hash};
 use crate::backend::cpu::Precision;
 use crate::campaign::{Campaign, CampaignError, Setting};
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use std::path::Path;
 pub(crate) struct Plan {
     /// The campaign file, as it was named.
     pub(crate) campaign_path: String,
-    /// BLAKE3 hash of the campaign text, and of the settings laid over it.
+    /// BLAKE3 hash of the campaign text, and of the settings laid over it, but for those of what is written.
     pub(crate) campaign_blake3: String,
     /// The campaign text.
     pub(crate) campaign: String,
@@ -41,7 +41,7 @@ impl Plan {
     pub(crate) fn of(campaign: &Campaign, precision: Precision, part: u32) -> Self {
         Self {
             campaign_path: campaign.path.display().to_string(),
-            campaign_blake3: campaign_hash(campaign),
+            campaign_blake3: flown_hash(campaign),
             campaign: campaign.text.clone(),
             overlay: campaign.overlay.clone(),
             robots: robots(campaign),

@@ -60,6 +60,27 @@ fn a_changed_or_missing_file_is_named_and_nothing_is_made_of_it() {
             said.stderr
         );
     }
+    // Any other bit of it.
+    let bytes = manifest.clone().into_bytes();
+    let (mut changed, mut other) = (0, 0);
+    for place_in_file in (0..bytes.len()).step_by(bytes.len() / 60) {
+        let mut flipped = bytes.clone();
+        flipped[place_in_file] ^= 1;
+        place.write("out/manifest.json", flipped);
+        let said = place.program(&commands[0]);
+        assert_eq!(said.code, 2, "{place_in_file}: {}", said.stderr);
+        let own = said
+            .stderr
+            .contains("out/manifest.json: is not the file that the run wrote");
+        (changed, other) = (changed + usize::from(own), other + usize::from(!own));
+        assert!(
+            own || said.stderr.contains("manifest.json"),
+            "{}",
+            said.stderr
+        );
+    }
+    // Some are no JSON any more, or no manifest.
+    assert!(changed > 30 && other > 0, "{changed} {other}");
     place.write("out/manifest.json", manifest);
     // What is made of the tables may be changed: CSV files are for other programs.
     place.write("out/summary.csv", "mine");

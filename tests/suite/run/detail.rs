@@ -4,13 +4,14 @@ use crate::common::altered;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 use urts_mc::backend::cpu::Precision;
-use urts_mc::campaign::Detail;
+use urts_mc::campaign::{Campaign, Detail};
 use urts_mc::report::{Length, report};
 use urts_mc::results::extent::Extent;
 use urts_mc::run::compare::{Asked, compare_runs};
 use urts_mc::run::directory::OutputDir;
-use urts_mc::run::{Extras, run};
+use urts_mc::run::{Extras, RunError, run};
 use urts_mc::simulation::RunOptions;
 
 /// Runs short flights with a detail.
@@ -75,20 +76,67 @@ fn what_a_detail_leaves_out_changes_nothing_else() {
 }
 
 #[test]
+fn a_run_that_was_interrupted_goes_on_with_another_detail() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run");
+    // The batches of one thread are shorter than the run.
+    let options = RunOptions {
+        threads: 1,
+        ..RunOptions::cpu(Precision::F32)
+    };
+    let with = |detail: &str| altered("smoke", &["episodes=1100", detail]);
+    let fly = |campaign: &Campaign, halt: &(dyn Fn() -> bool + Sync)| {
+        let out = OutputDir::claim(&path, campaign, false).unwrap();
+        let extras = Extras {
+            halt,
+            ..Extras::default()
+        };
+        run(campaign, &options, &out, extras, &|_| ()).map_err(Box::new)
+    };
+    // It is asked before each batch, and ends after the first one.
+    let asked = AtomicU32::new(0);
+    let after_one = || asked.fetch_add(1, Ordering::Relaxed) > 0;
+    let ended = fly(&with("output.detail=all"), &after_one).unwrap_err();
+    let RunError::Partial { kept, .. } = *ended else {
+        panic!("{ended}");
+    };
+    assert!(kept > 0 && kept < 1100, "{kept}");
+    let part = fs::read(path.join(".urts-mc-parts/part-00000000")).unwrap();
+    // Anything else that is set is another run.
+    let other = altered("smoke", &["episodes=1100", "verdict.max_rmse=0.5"]);
+    let refused = fly(&other, &|| true).unwrap_err().to_string();
+    assert!(refused.contains("other settings"), "{refused}");
+    let kept = fs::read(path.join(".urts-mc-parts/part-00000000")).unwrap();
+    assert!(part == kept);
+    let found = fly(&with("output.detail=summary"), &|| false).unwrap();
+    assert_eq!(found.manifest.episodes, 1100);
+    assert!(!files(&path).contains("episodes.parquet"));
+    // What is written belongs to the run that stands: it is not replaced by another detail unasked.
+    let campaign = with("output.detail=all");
+    let refused = OutputDir::claim(&path, &campaign, false).unwrap_err();
+    assert!(refused.to_string().contains("other settings"), "{refused}");
+    report(&path, Length::Brief).unwrap();
+}
+
+#[test]
 fn the_size_of_large_tables_is_told_to_within_a_half() {
     let dir = tempfile::tempdir().unwrap();
     for (name, changes) in [
         (
             "uav-paper",
-            &["episodes=500", "time.duration_s=3.0", "time.settle_s=0.5"][..],
+            &[
+                "episodes=500",
+                "time.duration_s=3.0",
+                "time.settle_s=0.5",
+                "fault.0.onset_s=0.6",
+            ][..],
         ),
         (
             "biped-paper",
             &["episodes=200", "time.duration_s=1.0", "time.settle_s=0.2"],
         ),
     ] {
-        let short = [changes, &["fault.0.onset_s=0.6"]].concat();
-        let campaign = altered(name, if name == "uav-paper" { &short } else { changes });
+        let campaign = altered(name, changes);
         let out = OutputDir::claim(&dir.path().join(name), &campaign, false).unwrap();
         let options = RunOptions::cpu(Precision::F32);
         run(&campaign, &options, &out, Extras::default(), &|_| ()).unwrap();
@@ -104,6 +152,7 @@ fn the_size_of_large_tables_is_told_to_within_a_half() {
             (told[1], episodes),
             (told[2], episodes + others.iter().sum::<f64>()),
         ] {
+            // Enough to choose a disk; what is packed how well is the library's to know.
             assert!(
                 (0.67..1.5).contains(&(told / found)),
                 "{name}: {told} {found}"
