@@ -53,7 +53,6 @@ use urts_mc::run::replay_files::ReplayFiles;
 use urts_mc::run::tune::{self, Structure};
 use urts_mc::run::{Extras, Findings, Labels, Progress, run};
 use urts_mc::synthesis::{Preset, synthesize};
-use urts_mc::util::memory;
 
 /// Carries out a command.
 ///
@@ -271,9 +270,7 @@ fn check_command(arguments: &CheckArguments) -> Result<Code, Failure> {
     let gains = gains?;
     can_be_judged(&campaign, &gains)?;
     let extent = Extent::of(&campaign);
-    if let Some(memory) = memory::available() {
-        extent.fits(&campaign, memory)?;
-    }
+    extent.fits_here(&campaign)?;
     if arguments.json {
         print_json(&terminal::plan_json(&campaign, &gains, extent))?;
     } else if !arguments.quiet {

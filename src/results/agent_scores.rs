@@ -6,7 +6,7 @@ use crate::model::metric::ChannelOutcome;
 use serde::Serialize;
 
 /// How an agent or an episode ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Within the limits.
@@ -73,19 +73,4 @@ pub struct ChannelScores {
     pub settling_s: f64,
     /// How long after the first fault it was settled again, s; infinite where it was not, none where no fault began.
     pub recovery_s: Option<f64>,
-}
-
-impl ChannelScores {
-    /// Of an outcome, the errors alone.
-    pub(super) fn errors(outcome: &ChannelOutcome) -> Self {
-        Self {
-            rmse: outcome.rmse,
-            max_abs: outcome.max_abs,
-            peak: f64::NAN,
-            effort: f64::NAN,
-            saturated: f64::NAN,
-            settling_s: f64::NAN,
-            recovery_s: None,
-        }
-    }
 }

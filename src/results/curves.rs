@@ -4,10 +4,9 @@
 use super::scores::Scores;
 use super::sensitivity::{SensitivityResult, by_chance};
 use super::table::Table;
-use super::team::Errors;
+use super::team::TeamNumbers;
 use crate::campaign::{Campaign, ChannelsOfCampaign};
 use crate::statistics::SIGNIFICANCE;
-use std::sync::Arc;
 
 /// The name of a curve of [`curves_table`]: the share of the episodes whose RMS error over the team is at most `x`.
 pub const DISTRIBUTION: &str = "distribution";
@@ -16,7 +15,7 @@ pub const SURVIVAL: &str = "survival";
 /// The median RMS error over the team of episodes whose condition is about `x`, between the 5th and 95th percentiles.
 pub const BAND: &str = "band";
 
-/// Points of a curve, at most: of fewer episodes every one is there.
+/// Points of a curve, at most, and one more where it ends: of fewer episodes every one is there.
 const MOST_POINTS: usize = 1_000;
 /// Groups of episodes, from the lowest to the highest value of a condition.
 const BINS: usize = 10;
@@ -35,18 +34,7 @@ struct Named<'a> {
 #[must_use]
 pub fn curves_table(campaign: &Campaign, scores: &Scores, ranking: &[SensitivityResult]) -> Table {
     let mut table = Table::default();
-    let of_groups = campaign.channel_groups();
-    let of_groups = of_groups.iter();
-    let of_groups = of_groups.map(|of| (of.name.clone(), Errors::on(campaign, of)));
-    let of_channels = campaign.groups().iter().enumerate();
-    let of_channels = of_channels.flat_map(|(index, group)| {
-        let channels = group.channels().iter().enumerate();
-        channels.map(move |(channel, name)| {
-            let name: Arc<str> = group.titled(name).into();
-            (name, Errors::on_channel(campaign, index, channel))
-        })
-    });
-    for (name, errors) in of_groups.chain(of_channels) {
+    for (name, numbers) in TeamNumbers::all(campaign) {
         for (index, controller) in campaign.controllers.iter().enumerate() {
             let named = Named {
                 curve: DISTRIBUTION,
@@ -54,7 +42,7 @@ pub fn curves_table(campaign: &Campaign, scores: &Scores, ranking: &[Sensitivity
                 group: Some(&name),
                 condition: None,
             };
-            let mut values = errors.rmse(scores, index);
+            let mut values = numbers.rmse(scores, index);
             values.sort_unstable_by(f64::total_cmp);
             for (value, upto) in steps(&values) {
                 let share = upto as f64 / values.len() as f64;
@@ -70,7 +58,7 @@ pub fn curves_table(campaign: &Campaign, scores: &Scores, ranking: &[Sensitivity
             condition: None,
         };
         let episodes = 0..scores.episodes();
-        let times = episodes.filter_map(|own| scores.failed_at_s(campaign, index, own));
+        let times = episodes.filter_map(|own| scores.failed_at_s(campaign.time, index, own));
         let mut times: Vec<f64> = times.collect();
         times.sort_unstable_by(f64::total_cmp);
         for (time_s, upto) in steps(&times) {
@@ -152,7 +140,7 @@ fn add_bands(
         true => by_value().collect(),
         false => met.chunks(met.len().div_ceil(BINS)).collect(),
     };
-    let errors = Errors::on(campaign, of);
+    let numbers = TeamNumbers::on(campaign, of);
     for (index, controller) in campaign.controllers.iter().enumerate() {
         let named = Named {
             curve: BAND,
@@ -160,7 +148,7 @@ fn add_bands(
             group: Some(&of.name),
             condition: Some(condition),
         };
-        let values = errors.rmse(scores, index);
+        let values = numbers.rmse(scores, index);
         for bin in &bins {
             let mut of_bin: Vec<f64> = bin.iter().map(|(_, episode)| values[*episode]).collect();
             of_bin.sort_unstable_by(f64::total_cmp);

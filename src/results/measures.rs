@@ -91,12 +91,10 @@ pub(super) fn failed_by(
     controller: usize,
     at_s: f64,
 ) -> Vec<bool> {
-    let end = campaign.time.steps;
+    let time = campaign.time;
     let of_episode = |episode: usize| {
-        let failed = scores.failed_step[controller][episode];
-        let at_end = scores.status[controller][episode] != Status::Ok;
-        let first = failed.into_iter().chain(at_end.then_some(end)).min();
-        first.is_some_and(|step| campaign.time.shown_s(step) <= at_s)
+        let failure = scores.failure(time, controller, episode);
+        failure.is_some_and(|step| time.shown_s(step) <= at_s)
     };
     (0..scores.episodes()).map(of_episode).collect()
 }

@@ -1,7 +1,7 @@
 //! Numbers of episodes: one of each episode, of all agents on some channels.
 
 use super::scores::{ChannelGroupScores, Scores};
-use super::team::Errors;
+use super::team::TeamNumbers;
 use crate::campaign::{Campaign, ChannelsOfCampaign, EpisodeNumber};
 
 /// A number of each episode under a controller: infinite where an agent diverged, not a number where it does not apply.
@@ -21,7 +21,7 @@ pub(super) fn of_episodes(
         EpisodeNumber::Settling => |own| own.settling_s,
         EpisodeNumber::Recovery => |own| own.recovery_s,
     };
-    Errors::on(campaign, of).of_channel_group(scores, controller, pick)
+    TeamNumbers::on(campaign, of).of_channel_group(scores, controller, pick)
 }
 
 /// Those of some episodes to which it applies, smallest first.

@@ -3,7 +3,7 @@
 use super::replicates::{Replicated, over_replicates};
 use super::scores::{Scores, Status};
 use super::strata::{Subset, parts, replicates};
-use super::team::Errors;
+use super::team::TeamNumbers;
 use crate::campaign::Campaign;
 use crate::random::Method;
 use crate::statistics::{
@@ -141,25 +141,14 @@ fn compare_pair(
     [a, b]: [usize; 2],
     parts: &[Subset],
 ) -> Vec<PairedComparison> {
-    let groups = campaign.channel_groups().into_iter();
-    let groups = groups.map(|of| ("group", of.name.clone(), Errors::on(campaign, &of)));
-    let channels = campaign.groups().iter().enumerate();
-    let channels = channels.flat_map(|(index, group)| {
-        let names = group.channels().iter().enumerate();
-        names.map(move |(c, name)| {
-            let errors = Errors::on_channel(campaign, index, c);
-            ("channel", Arc::from(group.titled(name)), errors)
-        })
+    let series = TeamNumbers::all(campaign).into_iter();
+    let series = series.map(|(name, numbers)| Series {
+        scope: numbers.scope(),
+        name,
+        log_ratios: log_ratios(campaign, scores, [a, b], &numbers),
+        status: &numbers.scores(scores).status,
     });
-    let series: Vec<Series<'_>> = groups
-        .chain(channels)
-        .map(|(scope, name, errors)| Series {
-            scope,
-            name,
-            log_ratios: log_ratios(campaign, scores, [a, b], &errors),
-            status: &errors.scores(scores).status,
-        })
-        .collect();
+    let series: Vec<Series<'_>> = series.collect();
     let paired = campaign.allows(Method::Paired);
     let of_part = |part: &Subset| {
         let failures = paired_failures(scores, [a, b], &part.episodes);
@@ -286,10 +275,10 @@ pub(super) fn log_ratios(
     campaign: &Campaign,
     scores: &Scores,
     [a, b]: [usize; 2],
-    errors: &Errors,
+    numbers: &TeamNumbers,
 ) -> Vec<f64> {
-    let smallest = errors.group(campaign).verdict.smallest_error;
-    let [of_a, of_b] = [a, b].map(|controller| errors.rmse(scores, controller));
+    let smallest = numbers.group(campaign).verdict.smallest_error;
+    let [of_a, of_b] = [a, b].map(|controller| numbers.rmse(scores, controller));
     let of_pair = |(of_a, of_b): (f64, f64)| match of_a.is_infinite() && of_b.is_infinite() {
         true => 0.0,
         false => (of_b.max(smallest) / of_a.max(smallest)).ln(),

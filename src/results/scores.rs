@@ -2,10 +2,11 @@
 
 use super::bad_episode::BadEpisode;
 use crate::agent::ChannelGroup;
-use crate::campaign::{AgentGroup, Campaign};
+use crate::campaign::{AgentGroup, Campaign, Time};
 use crate::model::episode::AgentOutcome;
 use crate::statistics::rms;
 use std::cmp::Ordering;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 pub use super::agent_scores::{AgentScores, ChannelScores, Status, status};
 
@@ -40,12 +41,14 @@ pub struct GroupScores {
     pub rmse: Vec<Vec<f64>>,
     /// What they showed on channel groups, `[controller]` then episode, channel group in one list.
     pub channel_groups: Vec<Vec<ChannelGroupScores>>,
+    /// What tells how each agent ended, and every error of it, from others to the last digit, `[controller][episode]`.
+    pub fingerprint: Vec<Vec<u64>>,
 }
 
 /// What a group of agents showed on a channel group of an episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelGroupScores {
-    /// RMS error over agents and channels; infinite, as all errors and the effort are, where an agent diverged.
+    /// RMS error over agents and channels; infinite, as all these numbers are, where an agent diverged.
     pub rmse: f64,
     /// The largest |e| of any agent and channel.
     pub max_abs: f64,
@@ -53,7 +56,7 @@ pub struct ChannelGroupScores {
     pub peak: f64,
     /// The integral of u^2, in the mean over agents and channels.
     pub effort: f64,
-    /// The largest share of the steps at a limit of any agent and channel; not a number where an agent diverged.
+    /// The largest share of the steps at a limit of any agent and channel.
     pub saturated: f64,
     /// When the last agent and channel was settled, s; infinite where one did not settle.
     pub settling_s: f64,
@@ -95,7 +98,7 @@ impl ChannelGroupScores {
         max_abs: f64::INFINITY,
         peak: f64::INFINITY,
         effort: f64::INFINITY,
-        saturated: f64::NAN,
+        saturated: f64::INFINITY,
         settling_s: f64::INFINITY,
         recovery_s: f64::INFINITY,
     };
@@ -110,6 +113,7 @@ impl Scores {
             status: vec![Vec::new(); controllers],
             rmse: vec![Vec::new(); controllers],
             channel_groups: vec![Vec::new(); controllers],
+            fingerprint: vec![Vec::new(); controllers],
         };
         Self {
             status: vec![Vec::new(); controllers],
@@ -133,8 +137,10 @@ impl Scores {
         fn of<T>(lists: &[Vec<T>]) -> usize {
             lists.iter().map(|own| size_of_val(own.as_slice())).sum()
         }
-        let of_group =
-            |own: &GroupScores| of(&own.status) + of(&own.rmse) + of(&own.channel_groups);
+        let of_group = |own: &GroupScores| {
+            let numbers = of(&own.rmse) + of(&own.channel_groups);
+            of(&own.status) + numbers + of(&own.fingerprint)
+        };
         let conditions = self.conditions.iter();
         let conditions: usize = conditions.map(|(_, own)| size_of_val(own.as_slice())).sum();
         of(&self.status)
@@ -144,20 +150,19 @@ impl Scores {
             + self.groups.iter().map(of_group).sum::<usize>()
     }
 
-    /// When the first agent of an episode failed under a controller, s; none where none did. What breaks a limit of the
-    /// RMS error alone fails at the end.
+    /// Step in which an episode failed under a controller; none where it did not. What breaks a limit of the RMS error
+    /// alone fails at the end.
+    pub(super) fn failure(&self, time: Time, controller: usize, episode: usize) -> Option<u32> {
+        match self.status[controller][episode] {
+            Status::Ok => None,
+            _ => Some(self.failed_step[controller][episode].unwrap_or(time.steps)),
+        }
+    }
+
+    /// The time of that step, s.
     #[must_use]
-    pub fn failed_at_s(
-        &self,
-        campaign: &Campaign,
-        controller: usize,
-        episode: usize,
-    ) -> Option<f64> {
-        let time = campaign.time;
-        let step = match self.status[controller][episode] {
-            Status::Ok => return None,
-            _ => self.failed_step[controller][episode].unwrap_or(time.steps),
-        };
+    pub fn failed_at_s(&self, time: Time, controller: usize, episode: usize) -> Option<f64> {
+        let step = self.failure(time, controller, episode)?;
         Some(f64::from(step) * time.step_s)
     }
 
@@ -196,13 +201,14 @@ impl Scores {
             own.status.extend(other.status);
             own.rmse.extend(other.rmse);
             own.channel_groups.extend(other.channel_groups);
+            own.fingerprint.extend(other.fingerprint);
         }
     }
 
-    /// Whether an episode ended the same under two controllers, to the last digit of every error of the team.
+    /// Whether an episode ended the same under two controllers, to the last digit of every error of every agent.
     pub(crate) fn alike(&self, [a, b]: [usize; 2], episode: usize) -> bool {
-        let of_group = |own: &GroupScores| own.errors(a, episode).eq(own.errors(b, episode));
-        self.status[a][episode] == self.status[b][episode] && self.groups.iter().all(of_group)
+        let alike = |own: &GroupScores| own.fingerprint[a][episode] == own.fingerprint[b][episode];
+        self.groups.iter().all(alike)
     }
 }
 
@@ -226,29 +232,14 @@ impl GroupScores {
         };
         let of_channels = group.channel_groups().into_iter().map(of_channels);
         self.channel_groups[controller].extend(of_channels);
-    }
-
-    /// How an episode ended and all its errors, as bits; numbers that are none are all alike.
-    fn errors(&self, controller: usize, episode: usize) -> impl Iterator<Item = u64> + '_ {
-        let episodes = self.status[controller].len().max(1);
-        let status = self.status[controller].get(episode);
-        let of_channels = &self.rmse[controller];
-        let of_groups = &self.channel_groups[controller];
-        let [channels, groups] = [of_channels.len(), of_groups.len()].map(|len| len / episodes);
-        let rows = |stride: usize| episode * stride..(episode + 1) * stride;
-        let of_channels = of_channels.get(rows(channels)).unwrap_or_default();
-        let of_groups = of_groups.get(rows(groups)).unwrap_or_default();
-        let of_groups = of_groups.iter().flat_map(|own| [own.rmse, own.max_abs]);
-        let numbers = of_channels.iter().copied().chain(of_groups);
-        let bits = numbers.map(|value| match value.is_nan() {
-            true => f64::NAN.to_bits(),
-            false => value.to_bits(),
+        let agents = agents.iter().map(|agent| {
+            let channels = agent.channels.iter();
+            (agent.status, channels.map(|own| [own.rmse, own.max_abs]))
         });
-        status.map(|own| *own as u64).into_iter().chain(bits)
+        self.fingerprint[controller].push(fingerprint(agents));
     }
 
-    /// Whether these are an episode's errors under a controller, to the last digit, of which the outcomes of its agents
-    /// are given.
+    /// Whether an episode under a controller is the one whose agents ended so, to the last digit of every error.
     #[must_use]
     pub fn holds(
         &self,
@@ -257,19 +248,25 @@ impl GroupScores {
         episode: u32,
         agents: &[AgentOutcome],
     ) -> bool {
-        let agents = agents.iter().map(|outcome| AgentScores {
-            status: status(group, outcome),
-            failed_step: outcome.failed_step,
-            channels: outcome.channels.iter().map(ChannelScores::errors).collect(),
+        let agents = agents.iter().map(|outcome| {
+            let channels = outcome.channels.iter();
+            let errors = channels.map(|own| [own.rmse, own.max_abs]);
+            (status(group, outcome), errors)
         });
-        let agents: Vec<AgentScores> = agents.collect();
-        let mut again = Self {
-            status: vec![Vec::new()],
-            rmse: vec![Vec::new()],
-            channel_groups: vec![Vec::new()],
-        };
-        again.add(group, 0, &agents);
-        let kept = self.errors(controller, episode as usize);
-        kept.eq(again.errors(0, 0))
+        let kept = self.fingerprint[controller].get(episode as usize);
+        kept == Some(&fingerprint(agents))
     }
+}
+
+/// A number of how agents ended and of all their errors; numbers that are none are all alike.
+fn fingerprint(agents: impl Iterator<Item = (Status, impl Iterator<Item = [f64; 2]>)>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for (status, errors) in agents {
+        status.hash(&mut hasher);
+        for error in errors.flatten() {
+            let error = if error.is_nan() { f64::NAN } else { error };
+            hasher.write_u64(error.to_bits());
+        }
+    }
+    hasher.finish()
 }

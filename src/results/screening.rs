@@ -9,7 +9,7 @@
 use super::scores::Scores;
 use super::strata::{Subset, parts};
 use super::summary::FailureRate;
-use super::team::Errors;
+use super::team::TeamNumbers;
 use crate::campaign::{Campaign, ChannelsOfCampaign, StratumFaults};
 use crate::statistics::{
     Estimate, LEVEL, independent_difference, quantile, quantile_interval, wilson,
@@ -115,7 +115,7 @@ fn screen_controller(
     let errors: Vec<Vec<Vec<f64>>> = groups
         .iter()
         .map(|of_group| {
-            let rmse = Errors::on(campaign, of_group).rmse(scores, controller);
+            let rmse = TeamNumbers::on(campaign, of_group).rmse(scores, controller);
             let of_part = |(part, _): &(&Subset, bool)| {
                 let mut logs: Vec<f64> = part.episodes.iter().map(|&k| rmse[k].ln()).collect();
                 logs.sort_unstable_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use super::bad_episode::BadEpisode;
 use super::paired::{Measured, log_ratios};
 use super::scores::{Scores, Status};
 use super::table::Table;
-use super::team::Errors;
+use super::team::TeamNumbers;
 use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign, Fault, Stratum, StratumFaults};
 use crate::draw::quantities::fault_of;
 use crate::random::Method;
@@ -121,8 +121,8 @@ pub fn rank(campaign: &Campaign, scores: &Scores) -> Vec<SensitivityResult> {
         },
         shuffled: SHUFFLED,
     };
-    let of_target = |(target, pair, errors): (Target, [usize; 2], Option<Errors>)| {
-        let Some(outcome) = outcome(campaign, scores, pair, errors.as_ref()) else {
+    let of_target = |(target, pair, numbers): (Target, [usize; 2], Option<TeamNumbers>)| {
+        let Some(outcome) = outcome(campaign, scores, pair, numbers.as_ref()) else {
             return Vec::new();
         };
         let effects = effects(&columns, &outcome, LEVEL, permutations);
@@ -183,7 +183,7 @@ pub(super) fn by_chance(campaign: &Campaign, condition: &str, values: &[f64]) ->
 }
 
 /// What the conditions may have an effect on.
-fn targets(campaign: &Campaign) -> Vec<(Target, [usize; 2], Option<Errors>)> {
+fn targets(campaign: &Campaign) -> Vec<(Target, [usize; 2], Option<TeamNumbers>)> {
     let controllers = &campaign.controllers;
     let groups = campaign.channel_groups();
     let target = |kind, a: usize, b: Option<usize>, group: Option<&ChannelsOfCampaign>| {
@@ -193,8 +193,8 @@ fn targets(campaign: &Campaign) -> Vec<(Target, [usize; 2], Option<Errors>)> {
             against: b.map(|b| controllers[b].clone()),
             group: group.map(|group| group.name.clone()),
         };
-        let errors = group.map(|group| Errors::on(campaign, group));
-        (target, [a, b.unwrap_or(a)], errors)
+        let numbers = group.map(|group| TeamNumbers::on(campaign, group));
+        (target, [a, b.unwrap_or(a)], numbers)
     };
     let mut targets = Vec::new();
     for a in 0..controllers.len() {
@@ -216,16 +216,16 @@ fn outcome(
     campaign: &Campaign,
     scores: &Scores,
     [a, b]: [usize; 2],
-    errors: Option<&Errors>,
+    numbers: Option<&TeamNumbers>,
 ) -> Option<Outcome> {
-    let Some(errors) = errors else {
+    let Some(numbers) = numbers else {
         let failed = scores.status[a].iter().map(|own| *own != Status::Ok);
         let failed: Vec<bool> = failed.collect();
         return Some(Outcome::Failure(Ranked::of_flags(&failed)));
     };
     let values = match a == b {
-        true => errors.rmse(scores, a),
-        false => log_ratios(campaign, scores, [a, b], errors),
+        true => numbers.rmse(scores, a),
+        false => log_ratios(campaign, scores, [a, b], numbers),
     };
     Ranked::of_all(&values).map(Outcome::Metric)
 }

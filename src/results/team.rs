@@ -1,10 +1,11 @@
-//! A team's RMS error in each episode, on a channel group or on one channel.
+//! The numbers of a team in each episode, on a channel group or on one channel.
 
-use super::scores::{ChannelGroupScores, GroupScores, Scores, Status};
+use super::scores::{ChannelGroupScores, GroupScores, Scores};
 use crate::campaign::{AgentGroup, Campaign, ChannelsOfCampaign};
+use std::sync::Arc;
 
-/// Channels of a group of agents whose errors the scores have as one number.
-pub(super) struct Errors {
+/// Where the numbers of a team on some channels are in the scores.
+pub(super) struct TeamNumbers {
     group: usize,
     /// The place of the channel, or of the channel group, among so many.
     place: usize,
@@ -12,7 +13,7 @@ pub(super) struct Errors {
     on_one_channel: bool,
 }
 
-impl Errors {
+impl TeamNumbers {
     /// On a channel group.
     pub(super) fn on(campaign: &Campaign, of: &ChannelsOfCampaign) -> Self {
         Self {
@@ -23,33 +24,50 @@ impl Errors {
         }
     }
 
-    /// On a channel of a group of agents.
-    pub(super) fn on_channel(campaign: &Campaign, group: usize, channel: usize) -> Self {
-        Self {
-            group,
-            place: channel,
-            of: campaign.groups()[group].channels().len(),
-            on_one_channel: true,
+    /// On every channel group of a campaign, then on every channel of each group of agents, with their names.
+    pub(super) fn all(campaign: &Campaign) -> Vec<(Arc<str>, Self)> {
+        let of_groups = campaign.channel_groups().into_iter();
+        let of_groups = of_groups.map(|of| (of.name.clone(), Self::on(campaign, &of)));
+        let groups = campaign.groups().iter().enumerate();
+        let of_channels = groups.flat_map(|(index, group)| {
+            let channels = group.channels();
+            channels.iter().enumerate().map(move |(place, name)| {
+                let own = Self {
+                    group: index,
+                    place,
+                    of: channels.len(),
+                    on_one_channel: true,
+                };
+                (Arc::from(group.titled(name)), own)
+            })
+        });
+        of_groups.chain(of_channels).collect()
+    }
+
+    /// What they are on: "group" of channels, or "channel".
+    pub(super) fn scope(&self) -> &'static str {
+        match self.on_one_channel {
+            true => "channel",
+            false => "group",
         }
     }
 
-    /// The group.
+    /// The group of agents.
     pub(super) fn group<'a>(&self, campaign: &'a Campaign) -> &'a AgentGroup {
         &campaign.groups()[self.group]
     }
 
-    /// The scores of the group.
+    /// The scores of the group of agents.
     pub(super) fn scores<'a>(&self, scores: &'a Scores) -> &'a GroupScores {
         &scores.groups[self.group]
     }
 
     /// RMS error of each episode over the team and the channels; infinite where an agent diverged.
     pub(super) fn rmse(&self, scores: &Scores, controller: usize) -> Vec<f64> {
-        let own = self.scores(scores);
         match self.on_one_channel {
             true => {
-                let values = own.rmse[controller].iter().copied();
-                self.of_episodes(own, controller, values)
+                let all = self.scores(scores).rmse[controller].iter();
+                all.skip(self.place).step_by(self.of).copied().collect()
             }
             false => self.of_channel_group(scores, controller, |own| own.rmse),
         }
@@ -62,23 +80,8 @@ impl Errors {
         controller: usize,
         number: fn(&ChannelGroupScores) -> f64,
     ) -> Vec<f64> {
-        let own = self.scores(scores);
-        let values = own.channel_groups[controller].iter().map(number);
-        self.of_episodes(own, controller, values)
-    }
-
-    fn of_episodes(
-        &self,
-        own: &GroupScores,
-        controller: usize,
-        values: impl Iterator<Item = f64>,
-    ) -> Vec<f64> {
-        let own_place = values.skip(self.place).step_by(self.of);
-        let with_status = own_place.zip(&own.status[controller]);
-        let of_episode = |(value, status): (f64, &Status)| match status {
-            Status::Diverged => f64::INFINITY,
-            Status::Ok | Status::Exceeded => value,
-        };
-        with_status.map(of_episode).collect()
+        let all = self.scores(scores).channel_groups[controller].iter();
+        let own = all.skip(self.place).step_by(self.of);
+        own.map(number).collect()
     }
 }

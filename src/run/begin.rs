@@ -18,7 +18,6 @@ use crate::simulation::cross_check::{CrossCheck, cross_check};
 use crate::simulation::flight::{Flight, Flown};
 use crate::simulation::{Engine, RunOptions, Segment, SimulationError, Times, open, threads};
 use crate::util::json::pretty;
-use crate::util::memory;
 use rayon::ThreadPool;
 use std::time::Instant;
 
@@ -79,9 +78,7 @@ pub fn run(
     extras: Extras<'_>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Findings, RunError> {
-    if let Some(memory) = memory::available() {
-        Extent::of(campaign).fits(campaign, memory)?;
-    }
+    Extent::of(campaign).fits_here(campaign)?;
     let plan = Plan::of(campaign, options.precision, Parts::size_of(campaign));
     Parts::may_be_in(out.path(), campaign, &plan, extras.resume())?;
     let (gpu, notes) = open(options)?;

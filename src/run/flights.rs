@@ -47,7 +47,7 @@ pub(super) fn flights(campaign: &Campaign, gains: &[GainSet], scores: &Scores) -
     for (PickedFlight { name, episode }, controllers) in picked.iter().zip(traced) {
         let names = campaign.controllers.iter().enumerate();
         for ((index, controller), groups) in names.zip(controllers) {
-            let failed_at_s = scores.failed_at_s(campaign, index, *episode as usize);
+            let failed_at_s = scores.failed_at_s(campaign.time, index, *episode as usize);
             for (of, all) in channel_groups(campaign, &groups) {
                 let shown = all.len().div_ceil(SHOWN).max(1);
                 for (instant, own) in all.iter().enumerate().step_by(shown) {

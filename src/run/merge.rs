@@ -12,7 +12,6 @@ use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, cautions};
 use crate::results::extent::Extent;
 use crate::simulation::{RunOptions, SimulationError, Times, threads};
-use crate::util::memory;
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -120,9 +119,7 @@ pub fn merge(
             });
         }
     }
-    if let Some(memory) = memory::available() {
-        Extent::of(&campaign).fits(&campaign, memory)?;
-    }
+    Extent::of(&campaign).fits_here(&campaign)?;
     let out = OutputDir::claim(out, &campaign, merging.overwrite)?;
     let mut parts = Parts::gathered(dirs, &out, &campaign, plan)?;
     complete(&parts, first)?;

@@ -7,7 +7,8 @@ use urts_mc::backend::cpu::Precision;
 use urts_mc::campaign::Campaign;
 use urts_mc::results::curves::{BAND, DISTRIBUTION, SURVIVAL, curves_table};
 use urts_mc::results::scores::Status;
-use urts_mc::results::sensitivity::rank;
+use urts_mc::results::sensitivity::{SensitivityResult, rank};
+use urts_mc::results::tables::Tables;
 
 /// A point of a curve: x, y, and what y lies between.
 type Point = [f64; 4];
@@ -38,22 +39,23 @@ fn column(frame: &DataFrame, name: &str) -> Vec<f64> {
     column.map(|value| value.unwrap_or(f64::NAN)).collect()
 }
 
-fn campaign() -> Campaign {
+/// A campaign, its tables, its ranking and its curves.
+fn simulated() -> (Campaign, Tables, Vec<SensitivityResult>, DataFrame) {
     let changes = [
         "controllers=[\"ftc\", \"pid-robust-observer\"]",
         "episodes=120",
         "verdict.max_error=0.6",
     ];
-    altered("uav-paper", &changes)
+    let campaign = altered("uav-paper", &changes);
+    let tables = tables(&campaign, Precision::F32);
+    let ranking = rank(&campaign, &tables.scores);
+    let curves = curves_table(&campaign, &tables.scores, &ranking);
+    (campaign, tables, ranking, curves.to_frame().unwrap())
 }
 
 #[test]
 fn curves_say_what_the_large_tables_say() {
-    let campaign = campaign();
-    let tables = tables(&campaign, Precision::F32);
-    let ranking = rank(&campaign, &tables.scores);
-    let curves = curves_table(&campaign, &tables.scores, &ranking);
-    let curves = curves.to_frame().unwrap();
+    let (campaign, tables, _, curves) = simulated();
     let channels = tables.channels.to_frame().unwrap();
     let episodes = tables.episodes.to_frame().unwrap();
     let rmse = column(&channels, "rmse");
@@ -114,11 +116,7 @@ fn curves_say_what_the_large_tables_say() {
 
 #[test]
 fn a_band_is_about_the_condition_that_moves_the_errors_most() {
-    let campaign = campaign();
-    let tables = tables(&campaign, Precision::F32);
-    let ranking = rank(&campaign, &tables.scores);
-    let curves = curves_table(&campaign, &tables.scores, &ranking);
-    let curves = curves.to_frame().unwrap();
+    let (campaign, tables, ranking, curves) = simulated();
     let sure = ranking
         .iter()
         .find(|own| own.target.kind == "rmse" && own.p_holm.unwrap() <= 0.05);

@@ -1,6 +1,6 @@
 //! Runs whose GPU fails: what is kept, what is said, what the CPU takes over.
 
-use crate::common::{altered, gains, gpu_or_skip};
+use crate::common::{altered, gains, gpu_or_skip, simulate_group};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 use urts_mc::backend::cpu::Precision;
@@ -204,9 +204,16 @@ fn a_table_that_its_own_engine_does_not_repeat_fails_the_cross_check() {
     let sound = check(&flight);
     assert!(sound.holds() && sound.compared > 24, "{sound:?}");
     assert_eq!((sound.episodes.len(), sound.not_repeated), (24, 0));
-    // One number of one episode, off by one unit in the last place.
-    let rmse = &mut flight.tables.scores.groups[0].rmse[1][7 * 6 + 5];
+    // One number of one agent of one episode, off by one unit in the last place.
+    let mut other = simulate_group(&campaign, 0, Precision::F32)[7].outcomes[1].clone();
+    let rmse = &mut other[2].channels[5].rmse;
     *rmse = rmse.next_up();
+    let scores = &mut flight.tables.scores.groups[0];
+    let group = campaign.first_group();
+    assert!(!scores.holds(group, 1, 7, &other));
+    other[2].channels[5].rmse = other[2].channels[5].rmse.next_down();
+    assert!(scores.holds(group, 1, 7, &other));
+    scores.fingerprint[1][7] ^= 1;
     let unsound = check(&flight);
     assert!(!unsound.holds());
     assert_eq!(unsound.not_repeated, 1);
