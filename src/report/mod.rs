@@ -5,6 +5,7 @@
 
 mod columns;
 mod comparison;
+mod drawn_values;
 mod episode;
 pub mod junit;
 pub mod notes;

@@ -85,8 +85,22 @@ impl RunData {
             .collect()
     }
 
+    /// Whether it has curves: runs of older versions have none.
+    pub(crate) fn has_curves(&self) -> bool {
+        self.curves.rows() > 0
+    }
+
+    /// The points of a curve of each controller, on channels where it is of some.
+    pub(crate) fn points(&self, curve: &str, group: Option<&str>) -> Vec<Vec<(f64, f64)>> {
+        let point = |row: &usize| (self.curves.real(*row, "x"), self.curves.real(*row, "y"));
+        let rows = self.rows_of_curve(curve, group);
+        rows.iter()
+            .map(|rows| rows.iter().map(point).collect())
+            .collect()
+    }
+
     /// The rows of a curve of each controller, on channels where it is of some.
-    pub(crate) fn curves(&self, curve: &str, group: Option<&str>) -> Vec<Vec<usize>> {
+    pub(crate) fn rows_of_curve(&self, curve: &str, group: Option<&str>) -> Vec<Vec<usize>> {
         let of_controller = |name: &String| {
             let wanted = [("curve", curve), ("controller", name)];
             let rows = self.curves.find(&wanted);

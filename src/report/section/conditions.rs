@@ -1,8 +1,8 @@
 //! Which conditions matter, what was drawn, and the worst episodes.
 
 use crate::campaign::AgentGroup;
-use crate::draw::quantities::{Quantity, Source, quantities, title};
-use crate::draw::{AgentDraw, draw};
+use crate::draw::quantities::{Source, title};
+use crate::report::drawn_values::{DrawnValues, drawn_values};
 use crate::report::page::document::{Block, Cell, Figure, Grid, Scale, Section, Spread};
 use crate::report::page::plot::{Axis, Color, Mark, Plot, Stroke};
 use crate::report::run_data::{RunData, whole};
@@ -141,7 +141,7 @@ fn explained(data: &RunData, tested: bool, grid: Grid) -> Vec<Block> {
 /// Quantile bands of the RMS error over the condition that moves it most.
 fn bands(data: &RunData) -> Option<Figure> {
     let table = &data.curves;
-    let curves = data.curves(BAND, None);
+    let curves = data.rows_of_curve(BAND, None);
     let first = *curves.iter().flatten().next()?;
     let [condition, group] = ["condition", "group"].map(|name| table.text(first, name));
     let groups = data.campaign.channel_groups();
@@ -198,19 +198,15 @@ pub(crate) fn drawn(data: &RunData) -> Section {
         _ => format!("every {stride}th episode"),
     };
     for group in data.campaign.groups() {
-        let draws = episodes
-            .clone()
-            .flat_map(|episode| draw(group, episode).applied(group).agents);
-        let draws: Vec<AgentDraw> = draws.collect();
         let mut fault = None;
-        for quantity in quantities(group) {
-            if let Source::Fault(index) = quantity.source
+        for drawn in drawn_values(group, episodes.clone()) {
+            if let (Source::Fault(index), Some(occurs)) = (drawn.quantity.source, drawn.occurs)
                 && fault != Some(index)
             {
                 fault = Some(index);
-                grid.rows.push(share(data, group, index, &draws));
+                grid.rows.push(share(data, group, index, occurs));
             }
-            grid.rows.extend(range(data, group, &quantity, &draws));
+            grid.rows.extend(range(data, group, drawn));
         }
     }
     Section::new(
@@ -228,44 +224,32 @@ pub(crate) fn drawn(data: &RunData) -> Section {
 }
 
 /// How many agents have a fault of their group.
-fn share(data: &RunData, group: &AgentGroup, index: usize, draws: &[AgentDraw]) -> Vec<Cell> {
-    let having = draws
-        .iter()
-        .filter(|own| own.faults[index].occurs())
-        .count();
-    let name = title(
-        &data.campaign,
-        &format!("fault{}_occurs", group.first_fault + index),
-    );
+fn share(data: &RunData, group: &AgentGroup, index: usize, [having, all]: [usize; 2]) -> Vec<Cell> {
+    let key = format!("fault{}_occurs", group.first_fault + index);
+    let name = title(&data.campaign, &key);
     let name = name.strip_suffix(" occurs").unwrap_or(&name);
     let mut row = vec![
         Cell::text(format!("{name}: share of agents that have it")),
-        Cell::number(draws.len().to_string()),
-        Cell::number(format::rate(
-            having as f64 / draws.len().max(1) as f64,
-            None,
-        )),
+        Cell::number(all.to_string()),
+        Cell::number(format::rate(having as f64 / all.max(1) as f64, None)),
     ];
     row.resize(7, Cell::number(""));
     row
 }
 
 /// The range of a quantity of a group of agents; none where nobody has it.
-fn range(
-    data: &RunData,
-    group: &AgentGroup,
-    quantity: &Quantity,
-    draws: &[AgentDraw],
-) -> Option<Vec<Cell>> {
-    let cells = draws.iter().flat_map(|draw| quantity.cells(draw));
-    let mut values: Vec<f64> = cells.filter(|value| value.is_finite()).collect();
+fn range(data: &RunData, group: &AgentGroup, drawn: DrawnValues) -> Option<Vec<Cell>> {
+    let mut values = drawn.values;
+    // What stays to the end lasts for ever.
+    values.retain(|value| value.is_finite());
     values.sort_by(f64::total_cmp);
     if values.is_empty() {
         return None;
     }
-    let name = match title(&data.campaign, &quantity.key) {
+    let key = &drawn.quantity.key;
+    let name = match title(&data.campaign, key) {
         // What is numbered through all groups has the name of its group already.
-        plain if plain == quantity.key => group.titled(&quantity.key),
+        plain if plain == *key => group.titled(key),
         titled => titled,
     };
     let at = |q: f64| {

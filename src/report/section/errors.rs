@@ -202,6 +202,10 @@ pub(crate) fn distributions(data: &RunData) -> Section {
     let table = Block::Grid(quantiles(data));
     let blocks = match data.manifest.episodes {
         0 | 1 => vec![table],
+        _ if !data.has_curves() => vec![
+            Block::text("A run of an older version has no curves to be drawn: run it again."),
+            table,
+        ],
         _ => vec![
             Block::Figure(figure(groups.collect(), "by channel group")),
             table,
@@ -220,10 +224,7 @@ const FRAME: f64 = 20.0;
 
 /// The empirical distribution of the errors on some channels by controller.
 fn ecdf(data: &RunData, title: &str, role: ChannelRole, limit: f64) -> Plot {
-    let curves = data.curves(DISTRIBUTION, Some(title));
-    let point = |row: &usize| (data.curves.real(*row, "x"), data.curves.real(*row, "y"));
-    let curves = curves.iter().map(|rows| rows.iter().map(point).collect());
-    let curves: Vec<Vec<(f64, f64)>> = curves.collect();
+    let curves = data.points(DISTRIBUTION, Some(title));
     let medians = curves.iter().filter_map(|points| {
         let (median, _) = points.iter().find(|(_, share)| *share > 0.5)?;
         Some(*median)

@@ -19,7 +19,10 @@ pub(crate) fn section(data: &RunData) -> Section {
     if !data.manifest.requirements.is_empty() {
         blocks.push(Block::Grid(requirements(data)));
     }
-    blocks.push(Block::Figure(survival(data)));
+    // Without curves nobody would seem to have failed.
+    if data.has_curves() {
+        blocks.push(Block::Figure(survival(data)));
+    }
     Section::new("Failures", blocks)
 }
 
@@ -176,13 +179,8 @@ fn requirements(data: &RunData) -> Grid {
 fn survival(data: &RunData) -> Figure {
     let campaign = &data.campaign;
     let end_s = f64::from(campaign.time.steps) * campaign.time.step_s;
-    let curves = data.curves(SURVIVAL, None);
-    let point = |row: &usize| (data.curves.real(*row, "x"), data.curves.real(*row, "y"));
-    let lines = curves.iter().map(|rows| {
-        let begin = std::iter::once((0.0, 1.0));
-        begin.chain(rows.iter().map(point)).collect()
-    });
-    let lines: Vec<Vec<(f64, f64)>> = lines.collect();
+    let mut lines = data.points(SURVIVAL, None);
+    lines.iter_mut().for_each(|line| line.insert(0, (0.0, 1.0)));
     let left = |line: &Vec<(f64, f64)>| line.last().map_or(1.0, |point| point.1);
     let most = lines
         .iter()

@@ -1,8 +1,8 @@
 //! The ranges of all that a campaign draws.
 
 use crate::campaign::{AgentGroup, Campaign};
-use crate::draw::quantities::{Source, quantities};
-use crate::draw::{AgentDraw, draw};
+use crate::draw::quantities::Source;
+use crate::report::drawn_values::drawn_values;
 use crate::report::page::document::{Block, Cell, Grid, Section};
 use serde_json::{Value, json};
 
@@ -107,20 +107,11 @@ fn subjects(campaign: &Campaign) -> Vec<Subject> {
 }
 
 fn subjects_of(group: &AgentGroup, prefix: &str) -> Vec<Subject> {
-    let episodes = 0..DRAWS.min(group.episodes);
-    let applied = |episode| draw(group, episode).applied(group).agents;
-    let draws: Vec<AgentDraw> = episodes.flat_map(applied).collect();
     let mut all: Vec<Subject> = Vec::new();
-    for quantity in quantities(group) {
+    for drawn in drawn_values(group, 0..DRAWS.min(group.episodes)) {
+        let (quantity, occurs) = (drawn.quantity, drawn.occurs);
         let [key, title] = names(group, prefix, quantity.source);
         if all.last().is_none_or(|last| last.title != title) {
-            let occurs = match quantity.source {
-                Source::Fault(index) => {
-                    let having = draws.iter().filter(|draw| draw.faults[index].occurs());
-                    Some([having.count(), draws.len()])
-                }
-                _ => None,
-            };
             all.push(Subject {
                 key,
                 title,
@@ -133,10 +124,8 @@ fn subjects_of(group: &AgentGroup, prefix: &str) -> Vec<Subject> {
             Source::Initial => format!("initial {}", quantity.name),
             _ => quantity.name.to_string(),
         };
-        let values = draws.iter().flat_map(|draw| quantity.applied(draw));
-        let values = values.map(|(_, value)| value).collect();
         if let Some(subject) = all.last_mut() {
-            subject.quantities.push((name, values));
+            subject.quantities.push((name, drawn.values));
         }
     }
     all

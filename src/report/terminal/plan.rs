@@ -66,7 +66,7 @@ pub fn plan(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> String {
 fn room(campaign: &Campaign, extent: Extent) -> String {
     let of_detail = |(detail, size): (Detail, u64)| {
         let mark = if detail == campaign.detail {
-            ", as it is"
+            " (as asked)"
         } else {
             ""
         };
