@@ -189,6 +189,22 @@ fn a_report_of_a_run_in_which_all_fails_says_so() {
 }
 
 #[test]
+fn a_run_of_an_older_version_has_a_report_without_the_pictures_that_it_has_no_points_of() {
+    let run = Run::of("smoke", 3, &[]);
+    assert!(run.read("report.html").contains(">survival<"));
+    let manifest = without_hash(&run.read("manifest.json"));
+    let mut older: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    older.as_object_mut().unwrap().remove("files");
+    fs::write(run.path("manifest.json"), older.to_string()).unwrap();
+    fs::remove_file(run.path("curves.parquet")).unwrap();
+    assert_eq!(program(&["report", run.dir.to_str().unwrap()]).0, 0);
+    let html = run.read("report.html");
+    // Without points, nobody would seem to fail.
+    assert!(!html.contains(">survival<"));
+    assert!(html.contains("A run of an older version has no curves to be drawn: run it again."));
+}
+
+#[test]
 fn a_report_of_an_interrupted_run_begins_with_what_is_missing() {
     let run = Run::of("smoke", 3, &[]);
     assert!(!run.read("report.html").contains("role=\"alert\""));
