@@ -7,7 +7,9 @@ import csv
 import glob
 import importlib
 import os
+import pathlib
 import sys
+import tempfile
 
 run = sys.argv[1]
 files = {os.path.basename(path)[:-8]: path for path in sorted(glob.glob(f"{run}/*.parquet"))}
@@ -70,12 +72,23 @@ episodes = parquet.read_table(files["episodes"]).select(["episode", "controller"
 joined = every.join(episodes, keys=["episode", "controller", "agent"])
 assert joined.num_rows == every.num_rows
 said(reader, "channels", "join")
+# A table of very many rows is a folder of files under the table's name.
+place = tempfile.TemporaryDirectory()
+folder = pathlib.Path(place.name) / "channels.parquet"
+folder.mkdir()
+middle = every.num_rows // 2
+for number, piece in enumerate([every.slice(0, middle), every.slice(middle)]):
+    parquet.write_table(piece, folder / f"part-{number:05}.parquet")
+assert parquet.read_table(folder).equals(every)
+said(reader, "channels", "open as a folder")
 
 if pandas:
     reader = f"pandas {pandas.__version__}"
     frames = {name: pandas.read_parquet(path) for name, path in files.items()}
     for name in frames:
         said(reader, name, "open")
+    assert len(pandas.read_parquet(folder)) == every.num_rows
+    said(reader, "channels", "open as a folder")
     ftc = pandas.read_parquet(files["channels"], filters=[("controller", "==", "ftc")])
     assert 0 < len(ftc) < len(frames["channels"])
     said(reader, "channels", "filter text")
@@ -93,6 +106,8 @@ if polars:
     frames = {name: polars.read_parquet(path) for name, path in files.items()}
     for name in frames:
         said(reader, name, "open")
+    assert polars.read_parquet(folder).height == every.num_rows
+    said(reader, "channels", "open as a folder")
     assert 0 < frames["channels"].filter(polars.col("controller") == "ftc").height < frames["channels"].height
     said(reader, "channels", "filter text")
     rows = frames["comparison"].filter(polars.col("scope") == "group", polars.col("stratum") == "all")
@@ -110,6 +125,9 @@ if duckdb:
         rows = duckdb.sql(f"select count(*) from '{path}'").fetchall()[0]
         assert rows[0] > 0
         said(reader, name, "open")
+    rows = duckdb.sql(f"select count(*) from '{folder}/*.parquet'").fetchall()[0]
+    assert rows[0] == every.num_rows
+    said(reader, "channels", "open as a folder")
     ftc = duckdb.sql(f"select count(*) from '{files['channels']}' where controller = 'ftc'").fetchall()[0]
     assert 0 < ftc[0] < every.num_rows
     said(reader, "channels", "filter text")

@@ -49,6 +49,15 @@ impl<'a> Check<'a> {
     }
 }
 
+/// A value as an error quotes it: of a long list, its beginning tells which it is.
+fn shortened(value: String) -> String {
+    const LONGEST: usize = 400;
+    match value.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &value[..end]),
+        None => value,
+    }
+}
+
 impl Check<'_> {
     pub(super) fn invalid(
         &self,
@@ -67,7 +76,7 @@ impl Check<'_> {
         CampaignError::Invalid {
             path: self.source.path.to_path_buf(),
             key: key + &place,
-            value: value.to_string(),
+            value: shortened(value.to_string()),
             limit: limit.to_string(),
             remedy: remedy.to_string(),
         }

@@ -50,6 +50,8 @@ pub struct Common {
     pub seed: u64,
     /// Number of episodes, at least 1.
     pub episodes: u32,
+    /// The number of episodes that was given in the place of the file's, if one was: errors name it so.
+    pub episodes_given: Option<u32>,
     /// Names of the controllers, all different, at least one.
     pub controllers: Vec<String>,
     /// Duration and step.

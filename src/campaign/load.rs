@@ -124,7 +124,10 @@ impl Campaign {
         let check = self.check(String::new());
         check.divides("--episodes", self.sampling, episodes)?;
         check.goes_round("--episodes", &self.strata, episodes)?;
-        Ok(self.with(|campaign| campaign.episodes = episodes))
+        Ok(self.with(|campaign| {
+            campaign.episodes = episodes;
+            campaign.episodes_given = Some(episodes);
+        }))
     }
 
     /// The same with another seed than the file's.
@@ -161,7 +164,7 @@ impl Common {
             path: &self.path,
             text: &self.text,
             overlay: &self.overlay,
-            episodes: None,
+            episodes: self.episodes_given,
         };
         Check::new(source, prefix)
     }

@@ -47,6 +47,7 @@ use urts_mc::results::can_be_judged;
 use urts_mc::results::dictionary::DICTIONARY;
 use urts_mc::results::extent::Extent;
 use urts_mc::run::directory::OutputDir;
+use urts_mc::run::error::OutputError;
 use urts_mc::run::output_file::OutputFile;
 use urts_mc::run::replay::replay;
 use urts_mc::run::replay_files::ReplayFiles;
@@ -90,6 +91,7 @@ fn carry_out(command: Command) -> Result<Code, Failure> {
         Command::Replay(arguments) => replay_command(&arguments),
         Command::Report { run, full } => {
             let length = if full { Length::Full } else { Length::Brief };
+            let _held = OutputDir::of_run(&run)?;
             report(&run, length)?;
             print(&terminal::report(&run))?;
             Ok(Code::Done)
@@ -188,6 +190,7 @@ impl RunArguments {
             overwrite: self.overwrite,
             allow_mixed: self.allow_mixed,
             halt: &|| halt.is_asked(),
+            ..Extras::default()
         };
         if !self.quiet {
             cautions(campaign).iter().for_each(|said| print_note(said));
@@ -333,6 +336,12 @@ fn replay_command(arguments: &ReplayArguments) -> Result<Code, Failure> {
         None => run.join(format!("replay-{episode}-{controller}.parquet")),
     };
     let files = ReplayFiles::beside(table);
+    let _held = match (OutputDir::of_run(run), out) {
+        (Ok(held), _) => Some(held),
+        // A run can be read where nothing can be written.
+        (Err(OutputError::Unwritable { .. }), Some(_)) => None,
+        (Err(error), _) => return Err(error.into()),
+    };
     if out.is_some() {
         files.may_be_written(*overwrite)?;
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use urts_mc::campaign::Campaign;
 use urts_mc::report::problems::shortcoming;
 use urts_mc::report::requirements::unmet;
-use urts_mc::report::terminal::{self, Detail};
+use urts_mc::report::terminal::{self, Amount};
 use urts_mc::run::Findings;
 
 /// How much is printed.
@@ -24,14 +24,14 @@ impl Said {
         findings: &Findings,
         out: &Path,
     ) -> Result<(), Failure> {
-        let detail = match self.verbose {
-            true => Detail::Everything,
-            false => Detail::Screen,
+        let amount = match self.verbose {
+            true => Amount::Everything,
+            false => Amount::Screen,
         };
         match (self.json, self.quiet) {
             (true, _) => print_json(findings),
             (false, true) => Ok(()),
-            (false, false) => print(&terminal::findings(campaign, findings, out, detail)),
+            (false, false) => print(&terminal::findings(campaign, findings, out, amount)),
         }
     }
 }

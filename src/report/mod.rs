@@ -18,6 +18,7 @@ mod run_data;
 pub(crate) mod section;
 pub mod submission;
 pub mod terminal;
+mod times;
 mod tuning;
 
 pub use columns::{columns, columns_chapter};

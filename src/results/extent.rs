@@ -81,7 +81,10 @@ impl Extent {
             "episodes",
             campaign.episodes,
             &format!("their statistics take about {needed} of memory, and {there} are there"),
-            &format!("give {fitting} or fewer, or another machine"),
+            &match fitting {
+                0 => "take a machine or a limit with more of it".to_string(),
+                _ => format!("give {fitting} or fewer, or another machine"),
+            },
         ))
     }
 }

@@ -7,6 +7,7 @@ use super::findings::Findings;
 use super::parts::{Parts, Plan, Resume, Writer};
 use super::progress::Progress;
 use super::shard::{Shard, Shards};
+use super::tables::FILE_ROWS;
 use crate::backend::cpu::Cpu;
 use crate::backend::gpu::{Gpu, GpuTimes};
 use crate::campaign::Campaign;
@@ -37,6 +38,8 @@ pub struct Extras<'a> {
     pub allow_mixed: bool,
     /// Whether to end soon and keep what was flown; asked between batches.
     pub halt: &'a (dyn Fn() -> bool + Sync),
+    /// Rows of a file of a large table, at most.
+    pub file_rows: usize,
 }
 
 impl Default for Extras<'_> {
@@ -48,6 +51,7 @@ impl Default for Extras<'_> {
             overwrite: false,
             allow_mixed: false,
             halt: &|| false,
+            file_rows: FILE_ROWS,
         }
     }
 }
@@ -140,6 +144,7 @@ pub fn run_on(
         pool,
         out,
         csv: extras.csv,
+        file_rows: extras.file_rows,
         notes,
         interrupted: flown.interrupted.clone(),
         times: Times {

@@ -7,7 +7,7 @@ use super::labels::Labels;
 use super::lock::{LOCK, Lock, NotHeld, Sharing};
 use super::manifest::{Manifest, campaign_hash};
 use super::replacement::recover;
-use super::sink::{Sink, part_in};
+use super::sink::{Sink, part_in, sync_names};
 use super::table_file::TableFile;
 use crate::campaign::Campaign;
 use crate::results::table::Table;
@@ -98,6 +98,15 @@ impl OutputDir {
         Self::hold(path, Sharing::Alone)?.judged(overwrite, is_own, other)
     }
 
+    /// Claims the directory of a finished run, for files that are made of it: nobody may replace the run meanwhile.
+    ///
+    /// # Errors
+    /// If it is none, is held by another process, or cannot be written.
+    pub fn of_run(path: &Path) -> Result<Self, OutputError> {
+        Manifest::read(path)?;
+        Self::hold(path, Sharing::Alone)
+    }
+
     /// Keeps all others from writing into a directory, or all but those that share it.
     fn hold(path: &Path, sharing: Sharing) -> Result<Self, OutputError> {
         let unwritable = |source| OutputError::Unwritable {
@@ -128,8 +137,15 @@ impl OutputDir {
         is_own: &dyn Fn(&str) -> bool,
         other: Option<String>,
     ) -> Result<Self, OutputError> {
-        let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
-        let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        // What cannot be listed may hold anything.
+        let entries = fs::read_dir(&self.path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+        let entries = entries.map_err(|source| OutputError::Unwritable {
+            path: self.path.clone(),
+            source,
+        })?;
+        let mut names = entries
+            .into_iter()
+            .map(|entry| entry.file_name().to_string_lossy().into_owned());
         let foreign = names.any(|name| !name.starts_with(ON_THE_WAY) && !is_own(&name));
         let what = other.or(foreign.then(|| "files, but no finished run".to_string()));
         match what.filter(|_| !overwrite) {
@@ -195,6 +211,38 @@ impl OutputDir {
         let mut file = self.csv(name)?;
         file.write(&frame)?;
         file.finish()
+    }
+
+    /// A folder in it.
+    pub(super) fn folder(&self, name: &str) -> Self {
+        Self::shown_as(&self.path.join(name), &self.shown.join(name))
+    }
+
+    /// Makes a file the first one in a folder of its own name.
+    ///
+    /// # Errors
+    /// If the folder cannot be made.
+    pub(super) fn make_folder(&self, name: &str, first: &str) -> Result<(), OutputError> {
+        let (place, aside) = (self.path.join(name), self.path.join(first));
+        let made = fs::rename(&place, &aside)
+            .and_then(|()| fs::create_dir(&place))
+            .and_then(|()| fs::rename(&aside, place.join(first)));
+        made.map_err(|source| OutputError::Unwritable {
+            path: self.shown.join(name),
+            source,
+        })
+    }
+
+    /// Brings the names in a folder to the disk.
+    ///
+    /// # Errors
+    /// If that fails.
+    pub(super) fn sync_folder(&self, name: &str) -> Result<(), OutputError> {
+        let synced = sync_names(&self.path.join(name));
+        synced.map_err(|source| OutputError::Unwritable {
+            path: self.shown.join(name),
+            source,
+        })
     }
 
     /// A table as it is written.

@@ -77,6 +77,14 @@ pub enum OutputError {
         /// In what it differs.
         reason: String,
     },
+    /// Two directories hold the same episodes of a run with other numbers.
+    #[error("{}: is not what {} holds of the same episodes; find out which is right, and merge without the other", path.display(), other.display())]
+    Contradiction {
+        /// A part.
+        path: PathBuf,
+        /// The other directory.
+        other: PathBuf,
+    },
     /// A table cannot be encoded.
     #[error("{}: the table cannot be encoded", path.display())]
     Table {
@@ -100,7 +108,7 @@ impl OutputError {
     #[must_use]
     pub fn is_usage(&self) -> bool {
         match self {
-            Self::Table { .. } | Self::DamagedPart { .. } => false,
+            Self::Table { .. } | Self::DamagedPart { .. } | Self::Contradiction { .. } => false,
             Self::Unwritable { .. } => !self.is_full(),
             _ => true,
         }

@@ -2,10 +2,11 @@
 
 use super::error::OutputError;
 use crate::campaign::Campaign;
+use polars::prelude::{ParquetReader, SerReader};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{Error, ErrorKind};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::Error;
 use std::path::Path;
 
 /// What a file was when it was written.
@@ -16,6 +17,9 @@ pub struct FileRecord {
     pub bytes: u64,
     /// BLAKE3 hash of its content.
     pub blake3: String,
+    /// Rows of a table; none of another file, and in runs of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<usize>,
 }
 
 impl FileRecord {
@@ -27,11 +31,41 @@ impl FileRecord {
         Ok(Self {
             bytes,
             blake3: hasher.finalize().to_hex().to_string(),
+            rows: None,
         })
+    }
+
+    /// The same, with the rows of a table.
+    fn of_new(path: &Path) -> std::io::Result<Self> {
+        let mut record = Self::of(path)?;
+        if path.extension().is_some_and(|own| own == "parquet") {
+            let rows = ParquetReader::new(File::open(path)?).num_rows();
+            record.rows = Some(rows.map_err(Error::other)?);
+        }
+        Ok(record)
     }
 }
 
-/// The records of those of some files that are in a directory.
+/// The files that are in a directory under a name: one, those of a folder, or none.
+fn files_of(dir: &Path, name: &str) -> std::io::Result<Vec<String>> {
+    let path = dir.join(name);
+    if !path.is_dir() {
+        return Ok(path
+            .exists()
+            .then(|| name.to_string())
+            .into_iter()
+            .collect());
+    }
+    let entries = fs::read_dir(path)?;
+    let within = |entry: std::io::Result<fs::DirEntry>| {
+        Ok(format!("{name}/{}", entry?.file_name().to_string_lossy()))
+    };
+    let mut files: Vec<String> = entries.map(within).collect::<std::io::Result<_>>()?;
+    files.sort();
+    Ok(files)
+}
+
+/// The records of those of some files and folders that are in a directory.
 ///
 /// # Errors
 /// If one cannot be read.
@@ -41,13 +75,13 @@ pub(super) fn records(
 ) -> Result<BTreeMap<String, FileRecord>, OutputError> {
     let mut all = BTreeMap::new();
     for name in names {
-        let path = dir.join(&name);
-        match FileRecord::of(&path) {
-            Ok(record) => {
-                all.insert(name, record);
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(source) => return Err(OutputError::Unwritable { path, source }),
+        let failed = |source| OutputError::Unwritable {
+            path: dir.join(&name),
+            source,
+        };
+        for file in files_of(dir, &name).map_err(failed)? {
+            let record = FileRecord::of_new(&dir.join(&file)).map_err(failed)?;
+            all.insert(file, record);
         }
     }
     Ok(all)
@@ -56,7 +90,7 @@ pub(super) fn records(
 /// Refuses a directory whose files are not those of the records.
 ///
 /// # Errors
-/// If one is missing, or was changed.
+/// If one is missing, or was changed, or a folder of theirs holds another.
 pub(super) fn verify(
     dir: &Path,
     records: &BTreeMap<String, FileRecord>,
@@ -74,6 +108,21 @@ pub(super) fn verify(
         }
         if found.blake3 != record.blake3 {
             return Err(damaged("its content was changed".to_string()));
+        }
+    }
+    // Whoever reads a folder as a table reads all of it.
+    let folders: BTreeSet<&str> = records
+        .keys()
+        .filter_map(|name| Some(name.split_once('/')?.0))
+        .collect();
+    for folder in folders {
+        let damaged = |path: &str, reason: String| OutputError::Damaged {
+            path: dir.join(path),
+            reason,
+        };
+        let there = files_of(dir, folder).map_err(|error| damaged(folder, error.to_string()))?;
+        if let Some(other) = there.iter().find(|name| !records.contains_key(*name)) {
+            return Err(damaged(other, "it wrote no such file".to_string()));
         }
     }
     Ok(())

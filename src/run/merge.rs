@@ -8,6 +8,7 @@ use super::findings::Findings;
 use super::parts::{Parts, plan_of, shards_of};
 use super::progress::Progress;
 use super::status::Status;
+use super::tables::FILE_ROWS;
 use crate::campaign::{Campaign, CampaignError};
 use crate::controllers::{GainSet, cautions};
 use crate::results::extent::Extent;
@@ -154,6 +155,7 @@ pub fn merge(
         pool: &pool,
         out: &out,
         csv: merging.csv,
+        file_rows: FILE_ROWS,
         notes,
         interrupted: None,
         times: Times {

@@ -22,6 +22,7 @@ mod progress;
 mod replacement;
 pub mod replay;
 pub mod replay_files;
+mod replay_rows;
 mod scores_of_run;
 pub mod shard;
 mod sink;

@@ -1,9 +1,10 @@
 //! A run in the place of an earlier one, wherever a process may end.
 
 use super::error::{MANIFEST, OutputError};
-use super::file_names::{A_RUN, ON_THE_WAY, is_replaced};
+use super::file_names::{A_RUN, ON_THE_WAY, is_replaced, is_table_folder};
+use super::sink::sync_names;
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What the name of a run begins with whose predecessor's files are gone, so that only its own are left to be moved.
@@ -62,8 +63,13 @@ fn is_ready(name: &str) -> Option<bool> {
 /// If a file cannot be replaced; then nothing is.
 pub(super) fn take_places(place: &Path, target: &Path) -> Result<(), OutputError> {
     // What cannot be replaced is found before anything is.
-    let standing = |name: OsString| Some(target.join(name)).filter(|path| path.is_dir());
-    let mut all = names(place).into_iter().flatten();
+    let standing = |name: OsString| {
+        let path = target.join(name);
+        Some(path).filter(|path| path.is_dir() && !is_table_folder(path))
+    };
+    let there = names(target).into_iter().flatten();
+    let there = there.filter(|name| is_replaced(&name.to_string_lossy()));
+    let mut all = names(place).into_iter().flatten().chain(there);
     if let Some(path) = all.find_map(standing) {
         let source = std::io::ErrorKind::IsADirectory.into();
         return Err(OutputError::Unwritable { path, source });
@@ -73,9 +79,9 @@ pub(super) fn take_places(place: &Path, target: &Path) -> Result<(), OutputError
         for name in names(&ready)?.into_iter().filter(|name| name != MANIFEST) {
             fs::rename(ready.join(&name), target.join(&name))?;
         }
-        sync(target)?;
+        sync_names(target)?;
         fs::rename(ready.join(MANIFEST), target.join(MANIFEST))?;
-        sync(target)?;
+        sync_names(target)?;
         fs::remove_dir(&ready)
     };
     moved().map_err(|source| OutputError::Unwritable {
@@ -90,7 +96,7 @@ fn cleared(place: &Path, target: &Path) -> std::io::Result<PathBuf> {
     if name.starts_with(READY) {
         return Ok(place.to_path_buf());
     }
-    sync(place)?;
+    sync_names(place)?;
     remove(&target.join(MANIFEST))?;
     for name in names(target)? {
         if is_replaced(&name.to_string_lossy()) {
@@ -100,7 +106,7 @@ fn cleared(place: &Path, target: &Path) -> std::io::Result<PathBuf> {
     let own = name.strip_prefix(ON_THE_WAY).unwrap_or(&name);
     let ready = target.join(format!("{READY}{own}"));
     fs::rename(place, &ready)?;
-    sync(target)?;
+    sync_names(target)?;
     Ok(ready)
 }
 
@@ -109,25 +115,14 @@ fn names(dir: &Path) -> std::io::Result<Vec<OsString>> {
     entries.map(|entry| Ok(entry?.file_name())).collect()
 }
 
-/// Removes a file that may be absent.
+/// Removes a file, or the folder of a large table, that may be absent.
 fn remove(path: &Path) -> std::io::Result<()> {
-    match fs::remove_file(path) {
+    let removed = match is_table_folder(path) {
+        true => fs::remove_dir_all(path),
+        false => fs::remove_file(path),
+    };
+    match removed {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
-    }
-}
-
-/// Brings the names in a directory to the disk, where directories can be opened.
-fn sync(dir: &Path) -> std::io::Result<()> {
-    use std::io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
-    if !cfg!(unix) {
-        return Ok(());
-    }
-    match File::open(dir)?.sync_all() {
-        // Some file systems do this for files alone.
-        Err(error) if [InvalidInput, PermissionDenied, Unsupported].contains(&error.kind()) => {
-            Ok(())
-        }
-        synced => synced,
     }
 }

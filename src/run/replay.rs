@@ -1,7 +1,8 @@
 //! One episode of a run again, with its trajectories.
 
 use super::error::{MANIFEST, OutputError};
-use super::manifest::Manifest;
+use super::manifest::{GIT_REVISION, Manifest};
+use super::replay_rows::difference;
 use crate::backend::cpu::{Cpu, Precision};
 use crate::backend::gpu::{Adapter, Gpu, GpuError, Tuning, Wanted};
 use crate::campaign::{AgentGroup, Campaign, CampaignError};
@@ -57,6 +58,8 @@ pub struct Replay {
     pub controller: usize,
     /// Why it was simulated in double precision on the CPU, if what simulated the run is not to be had here.
     pub stand_in: Option<String>,
+    /// In what it is not the episode of the run's tables, if so.
+    pub differs: Option<String>,
     /// How each agent ended; equal to the run's rows, bit by bit in the same arithmetic.
     pub outcomes: Vec<AgentOutcome>,
     /// What every agent and channel showed.
@@ -132,6 +135,12 @@ pub fn replay(
             .into());
         }
     };
+    let outcomes: Vec<&[AgentOutcome]> = simulated.iter().map(|(own, _)| &own[..]).collect();
+    let differs = match &stand_in {
+        None => difference(dir, &campaign, episode, &outcomes)?,
+        Some(_) => None,
+    };
+    let differs = differs.map(|what| format!("{what}; {}", versions(&manifest)));
     let mut others: Vec<OtherController> = simulated
         .into_iter()
         .enumerate()
@@ -152,10 +161,27 @@ pub fn replay(
         episode,
         controller: index,
         stand_in,
+        differs,
         outcomes,
         snapshots,
         others,
     })
+}
+
+/// Which versions of the program made a run and are at it now.
+fn versions(manifest: &Manifest) -> String {
+    let now = env!("CARGO_PKG_VERSION");
+    match (manifest.version == now, &manifest.git_revision) {
+        (true, same) if same.as_deref() == GIT_REVISION => {
+            "this version made the run, so please report this".to_string()
+        }
+        _ => {
+            let revision = manifest.git_revision.iter();
+            let revision: String = revision.map(|own| format!(" ({own})")).collect();
+            let made = &manifest.version;
+            format!("version {made}{revision} made the run, and shows its episodes")
+        }
+    }
 }
 
 /// What (24) says about the agents of all groups under a controller.
@@ -300,6 +326,19 @@ fn interval_steps(campaign: &Campaign, interval_s: Option<f64>) -> Result<u32, R
 }
 
 impl Replay {
+    /// What has to be known of it, in sentences.
+    #[must_use]
+    pub fn cautions(&self) -> Vec<String> {
+        let stand_in = self.stand_in.iter().map(|reason| {
+            format!(
+                "Simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}."
+            )
+        });
+        let differs = self.differs.iter();
+        let differs = differs.map(|what| format!("This is not the episode of the run: {what}."));
+        stand_in.chain(differs).collect()
+    }
+
     /// The trajectories as a table: a row per instant, agent and channel.
     #[must_use]
     pub fn table(&self) -> Table {

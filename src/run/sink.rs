@@ -15,6 +15,21 @@ pub(super) fn part_in(dir: &Path) -> std::io::Result<NamedTempFile> {
     builder.tempfile_in(dir)
 }
 
+/// Brings the names in a directory to the disk, where directories can be opened.
+pub(super) fn sync_names(dir: &Path) -> std::io::Result<()> {
+    use ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(dir)?.sync_all() {
+        // Some file systems do this for files alone.
+        Err(error) if [InvalidInput, PermissionDenied, Unsupported].contains(&error.kind()) => {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
 /// A file that is being written, and what its disk said first when it took no more.
 pub(super) struct Sink {
     file: BufWriter<File>,

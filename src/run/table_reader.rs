@@ -1,11 +1,14 @@
 //! A table of a run, read back.
 
 use super::error::OutputError;
-use polars::prelude::{Column as PolarsColumn, DataType, ParquetReader, PolarsResult, SerReader};
+use polars::prelude::{
+    Column as PolarsColumn, DataFrame, DataType, ParquetReader, PolarsResult, SerReader,
+};
 use std::collections::HashMap;
-use std::fs::File;
+use std::fs::{self, File};
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far
 /// as they go.
@@ -25,21 +28,35 @@ enum Column {
 }
 
 impl TableReader {
-    /// Reads `<dir>/<name>.parquet`, of all columns those that are `wanted`; none if there is no such file.
+    /// Reads `<dir>/<name>.parquet`, a file or a folder of files, of all columns those that are `wanted`; none if there
+    /// is none.
     ///
     /// # Errors
-    /// If the file is not a table.
+    /// If a file is not a table.
     pub(crate) fn read(
         dir: &Path,
         name: &str,
         wanted: impl Fn(&str) -> bool,
     ) -> Result<Option<Self>, OutputError> {
-        let path = dir.join(format!("{name}.parquet"));
-        let Ok(file) = File::open(&path) else {
+        Self::read_rows(dir, name, 0..usize::MAX, wanted)
+    }
+
+    /// The same of some of its rows.
+    ///
+    /// # Errors
+    /// As [`TableReader::read`].
+    pub(crate) fn read_rows(
+        dir: &Path,
+        name: &str,
+        rows: Range<usize>,
+        wanted: impl Fn(&str) -> bool,
+    ) -> Result<Option<Self>, OutputError> {
+        let files = files_of(&dir.join(format!("{name}.parquet")));
+        if files.is_empty() {
             return Ok(None);
-        };
+        }
         // The library that reads Parquet panics at some files that are damaged.
-        let parsed = catch_unwind(AssertUnwindSafe(|| Self::parse(file, wanted)));
+        let parsed = catch_unwind(AssertUnwindSafe(|| Self::parse(files, rows, wanted)));
         let reason = match parsed {
             Ok(Ok(table)) => return Ok(Some(table)),
             Ok(Err(error)) => error.to_string(),
@@ -51,15 +68,43 @@ impl TableReader {
         })
     }
 
-    fn parse(file: File, wanted: impl Fn(&str) -> bool) -> PolarsResult<Self> {
-        let mut reader = ParquetReader::new(file);
-        let schema = reader.schema()?;
-        let names: Vec<String> = schema
-            .iter_names()
-            .map(ToString::to_string)
-            .filter(|name| wanted(name))
-            .collect();
-        let frame = reader.with_columns(Some(names.clone())).finish()?;
+    fn parse(
+        files: Vec<File>,
+        rows: Range<usize>,
+        wanted: impl Fn(&str) -> bool,
+    ) -> PolarsResult<Self> {
+        let (mut first, mut all) = (0, DataFrame::empty());
+        for (number, file) in files.into_iter().enumerate() {
+            let mut reader = ParquetReader::new(file);
+            let schema = reader.schema()?;
+            let names = schema.iter_names().map(ToString::to_string);
+            let names: Vec<String> = names.filter(|name| wanted(name)).collect();
+            let end = first + reader.num_rows()?;
+            let own = rows.start.clamp(first, end)..rows.end.clamp(first, end);
+            let slice = Some((own.start - first, own.len()));
+            // The first file says which columns there are, whether or not its rows are wanted.
+            if number == 0 || !own.is_empty() {
+                let reader = reader.with_columns(Some(names)).with_slice(slice);
+                let frame = reader.finish()?;
+                match number {
+                    0 => all = frame,
+                    _ => {
+                        all.vstack_mut_owned(frame)?;
+                    }
+                }
+            }
+            first = end;
+        }
+        Self::of(&all)
+    }
+
+    /// A table at hand.
+    ///
+    /// # Errors
+    /// If a column holds neither numbers nor flags nor texts.
+    pub(crate) fn of(frame: &DataFrame) -> PolarsResult<Self> {
+        let names = frame.get_column_names().into_iter();
+        let names: Vec<String> = names.map(ToString::to_string).collect();
         let mut columns = HashMap::new();
         for name in &names {
             columns.insert(name.clone(), column(frame.column(name)?)?);
@@ -96,6 +141,27 @@ impl TableReader {
         self.real(row, name) == value as f64
     }
 
+    /// A cell as a text.
+    pub(crate) fn shown(&self, row: usize, name: &str) -> String {
+        match self.columns.get(name) {
+            Some(Column::Texts(..)) => format!("{:?}", self.text(row, name)),
+            _ => self.real(row, name).to_string(),
+        }
+    }
+
+    /// The row and the column of the first cell that is not the same in another table, among the columns that both
+    /// have; empty cells are alike.
+    pub(crate) fn difference<'a>(&'a self, other: &Self) -> Option<(usize, &'a str)> {
+        let common = self.names.iter().filter(|name| other.names.contains(name));
+        let mut cells = common.flat_map(|name| (0..self.rows).map(move |row| (row, name.as_str())));
+        cells.find(|&(row, name)| {
+            let [own, there] = [self, other].map(|table| table.real(row, name));
+            let are_alike = own.to_bits() == there.to_bits() || own.is_nan() && there.is_nan();
+            let is_there = row < other.rows;
+            !is_there || !are_alike || self.text(row, name) != other.text(row, name)
+        })
+    }
+
     /// A text of a row.
     pub(crate) fn text(&self, row: usize, name: &str) -> &str {
         match self.columns.get(name) {
@@ -118,6 +184,21 @@ impl TableReader {
                 .all(|(name, value)| self.text(row, name) == *value)
         })
     }
+}
+
+/// The files of a table, in their order.
+fn files_of(path: &Path) -> Vec<File> {
+    let paths = match fs::read_dir(path) {
+        Ok(entries) => {
+            let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+            paths.sort();
+            paths
+        }
+        Err(_) => vec![path.to_path_buf()],
+    };
+    let opened = paths.into_iter().map(File::open);
+    // What a run counts has been verified before.
+    opened.filter_map(Result::ok).collect()
 }
 
 fn column(column: &PolarsColumn) -> PolarsResult<Column> {

@@ -12,6 +12,7 @@ use crate::simulation::Segment;
 use crate::simulation::stopping::StoppingRule;
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use std::time::Duration;
 
 /// What the parts of a run make.
 pub(super) struct Tabulated {
@@ -20,6 +21,8 @@ pub(super) struct Tabulated {
     pub(super) stopping: StoppingRule,
     /// What simulated its episodes, in their order.
     pub(super) segments: Vec<Segment>,
+    /// How long it took to write the tables that grow with the episodes.
+    pub(super) writing: Duration,
 }
 
 impl Tabulated {
@@ -44,6 +47,7 @@ pub(super) fn tabulate(
         tables: Tables::new(campaign),
         stopping: StoppingRule::new(campaign),
         segments: Vec::new(),
+        writing: Duration::ZERO,
     };
     for index in 0..parts.count() {
         if made.stopping.is_done() {
@@ -72,7 +76,7 @@ pub(super) fn tabulate(
             break;
         }
     }
-    files.finish(&mut made.tables)?;
+    made.writing = files.finish(&mut made.tables)?;
     Ok(made)
 }
 

@@ -1,6 +1,6 @@
 //! Episodes flown in batches, which leave as they end.
 
-use super::group_simulators::GroupSimulators;
+use super::group_simulators::{GroupSimulators, Landed, Packed, Packers};
 use super::options::{Backend, RunOptions, SimulationError};
 use super::segment::Engine;
 use crate::backend::EpisodeResult;
@@ -206,8 +206,8 @@ impl Flight<'_> {
         self.on(&mut simulators, batch, &engine, flown, take, done);
     }
 
-    /// Simulates batch by batch, while another thread takes in the batch before; at most one waits, so memory stays
-    /// small.
+    /// Simulates batch by batch, while one thread packs the batch after and another one unpacks and takes in the batch
+    /// before; at most one waits on either side, so memory stays small.
     fn on(
         &self,
         simulators: &mut GroupSimulators<'_>,
@@ -218,46 +218,46 @@ impl Flight<'_> {
         done: &(dyn Fn(u32) + Sync),
     ) -> Option<GpuError> {
         let (enough, mut failure) = (AtomicBool::new(false), None);
-        let seen = &enough;
+        let (packers, seen) = (simulators.packers(), &enough);
         // Where the episodes at hand may be the last, none is simulated before that is known.
         let waits = self.campaign.stop.is_some();
+        let ranges: Vec<Range<u32>> = self.batches(flown.episodes, batch).collect();
         let mut before = GpuTimes::default();
         std::thread::scope(|scope| {
-            let (sender, batches) = mpsc::sync_channel::<Batch>(1);
+            let (ready, packed) = mpsc::sync_channel::<Packed>(1);
+            let (sender, landed) = mpsc::sync_channel::<Flying>(1);
             let (answer, taken) = mpsc::channel::<()>();
-            let taking = scope.spawn(move || {
-                let (mut episodes, mut spent_s) = (0, 0.0);
-                for batch in batches {
-                    let start = Instant::now();
-                    if !seen.load(Ordering::Relaxed) {
-                        episodes += u32::try_from(batch.len()).unwrap_or(u32::MAX);
-                        seen.store(take(batch).is_break(), Ordering::Relaxed);
+            let packers = &packers;
+            scope.spawn(move || {
+                for range in ranges {
+                    let packed = packers.pack(range, self.pool);
+                    // Nobody wants another one.
+                    if ready.send(packed).is_err() {
+                        break;
                     }
-                    spent_s += start.elapsed().as_secs_f64();
-                    // Nobody may wait for it.
-                    let _ = answer.send(());
                 }
-                (episodes, spent_s)
             });
-            for range in self.batches(flown.episodes, batch) {
+            let taking = scope.spawn(move || self.taking(packers, landed, take, seen, &answer));
+            let mut start = Instant::now();
+            for packed in packed {
                 if enough.load(Ordering::Relaxed) || (self.halt)() {
                     break;
                 }
-                let start = Instant::now();
-                let simulated = self.pool.install(|| simulators.simulate(&range, done));
+                let first = packed.range.start;
+                let simulated = simulators.simulate(packed, self.pool, done);
                 let loop_s = start.elapsed().as_secs_f64();
                 flown.loop_s += loop_s;
-                let groups = match simulated {
-                    Ok(groups) => groups,
+                let landed = match simulated {
+                    Ok(landed) => landed,
                     Err(error) => {
                         failure = Some(error);
                         break;
                     }
                 };
                 let times = simulators.gpu_times();
-                let next = Batch {
-                    first: range.start,
-                    groups,
+                let next = Flying {
+                    first,
+                    landed,
                     engine: engine(times - before),
                     loop_s,
                 };
@@ -266,14 +266,71 @@ impl Flight<'_> {
                 if sender.send(next).is_err() || waits && taken.recv().is_err() {
                     break;
                 }
+                start = Instant::now();
             }
             drop(sender);
             let done = taking.join();
-            let (episodes, spent_s) = done.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            flown.episodes += episodes;
-            flown.taking_s += spent_s;
+            let taken = done.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            flown.episodes += taken.episodes;
+            flown.taking_s += taken.spent_s;
+            flown.enough |= taken.enough;
+            failure = failure.take().or(taken.failure);
         });
-        flown.enough |= enough.into_inner();
         failure
     }
+
+    /// Unpacks what was simulated and hands it out, until there is no more or whoever takes it wants no more, of which
+    /// `seen` tells; each batch is answered.
+    fn taking(
+        &self,
+        packers: &Packers,
+        landed: mpsc::Receiver<Flying>,
+        take: Take<'_>,
+        seen: &AtomicBool,
+        answer: &mpsc::Sender<()>,
+    ) -> Taken {
+        let mut taken = Taken::default();
+        for flying in landed {
+            let start = Instant::now();
+            if !seen.load(Ordering::Relaxed) {
+                match packers.unpack(flying.landed, self.pool) {
+                    Ok(groups) => {
+                        let batch = Batch {
+                            first: flying.first,
+                            groups,
+                            engine: flying.engine,
+                            loop_s: flying.loop_s,
+                        };
+                        taken.episodes += u32::try_from(batch.len()).unwrap_or(u32::MAX);
+                        taken.enough = take(batch).is_break();
+                    }
+                    Err(error) => taken.failure = Some(error),
+                }
+                let is_last = taken.enough || taken.failure.is_some();
+                seen.store(is_last, Ordering::Relaxed);
+            }
+            taken.spent_s += start.elapsed().as_secs_f64();
+            // Nobody may wait for it.
+            let _ = answer.send(());
+        }
+        taken
+    }
+}
+
+/// A batch between its simulation and whoever takes it.
+struct Flying {
+    first: u32,
+    landed: Landed,
+    engine: Engine,
+    loop_s: f64,
+}
+
+/// What became of the batches that were handed out.
+#[derive(Default)]
+struct Taken {
+    episodes: u32,
+    spent_s: f64,
+    /// Whether whoever took them wanted no more.
+    enough: bool,
+    failure: Option<GpuError>,
 }

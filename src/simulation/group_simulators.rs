@@ -2,12 +2,16 @@
 
 use crate::backend::EpisodeResult;
 use crate::backend::cpu::{Cpu, Precision, Simd};
-use crate::backend::gpu::{Gpu, GpuError, GpuSimulator, GpuTimes, Tuning};
+use crate::backend::gpu::{
+    Gpu, GpuError, GpuSimulator, GpuTimes, LandedBatch, PackedBatch, Packer, Tuning,
+};
 use crate::campaign::Campaign;
 use crate::model::episode::{AgentOutcome, Snapshot};
 use crate::synthesis::LoopGains;
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The simulators of a campaign, one of each group of agents. Groups do not act on each other, so that one may be
@@ -24,6 +28,62 @@ pub(crate) enum GroupSimulators<'g> {
 pub(crate) struct GroupTrace<T> {
     pub(crate) outcomes: Vec<AgentOutcome>,
     pub(crate) kept: Vec<T>,
+}
+
+/// What draws and packs the episodes of a batch, and unpacks how they ended, beside the simulators: a device that
+/// simulates leaves the CPU free.
+pub(crate) enum Packers {
+    /// On the CPU, simulating is all there is to do.
+    Cpu,
+    /// On a GPU, of each group of agents.
+    Gpu(Vec<Arc<Packer>>),
+}
+
+/// A range of episodes, ready to be simulated.
+pub(crate) struct Packed {
+    pub(crate) range: Range<u32>,
+    /// Of each group of agents on a GPU.
+    batches: Vec<PackedBatch>,
+}
+
+/// The same, simulated.
+pub(crate) enum Landed {
+    Cpu(Vec<Vec<EpisodeResult>>),
+    Gpu(Vec<LandedBatch>),
+}
+
+impl Packers {
+    /// Makes a range of episodes ready.
+    pub(crate) fn pack(&self, range: Range<u32>, pool: &ThreadPool) -> Packed {
+        let batches = match self {
+            Self::Cpu => Vec::new(),
+            Self::Gpu(groups) => {
+                let pack = |own: &Arc<Packer>| own.pack(range.clone().collect());
+                pool.install(|| groups.iter().map(pack).collect())
+            }
+        };
+        Packed { range, batches }
+    }
+
+    /// How the episodes ended, `[group][episode]`.
+    ///
+    /// # Errors
+    /// If what a GPU returned is not of these episodes.
+    pub(crate) fn unpack(
+        &self,
+        landed: Landed,
+        pool: &ThreadPool,
+    ) -> Result<Vec<Vec<EpisodeResult>>, GpuError> {
+        match (self, landed) {
+            (_, Landed::Cpu(groups)) => Ok(groups),
+            (Self::Cpu, Landed::Gpu(_)) => Ok(Vec::new()),
+            (Self::Gpu(groups), Landed::Gpu(landed)) => {
+                let groups = groups.iter().zip(landed);
+                let groups = groups.map(|(own, landed)| own.unpack(landed));
+                pool.install(|| groups.collect())
+            }
+        }
+    }
 }
 
 /// What is kept of an instant.
@@ -81,16 +141,25 @@ impl<'g> GroupSimulators<'g> {
         }
     }
 
-    /// Simulates a range of at most [`GroupSimulators::batch`] episodes under every controller, `[group][episode]`;
-    /// `done` is told of episodes, each of which counts when all its groups are done.
+    /// What packs and unpacks episodes for these.
+    pub(crate) fn packers(&self) -> Packers {
+        match self {
+            Self::Cpu(_) => Packers::Cpu,
+            Self::Gpu(groups) => Packers::Gpu(groups.iter().map(GpuSimulator::packer).collect()),
+        }
+    }
+
+    /// Simulates at most [`GroupSimulators::batch`] episodes under every controller; `done` is told of episodes, each
+    /// of which counts when all its groups are done.
     ///
     /// # Errors
     /// If the GPU fails; nothing of the range is known then.
     pub(crate) fn simulate(
         &mut self,
-        episodes: &Range<u32>,
+        packed: Packed,
+        pool: &ThreadPool,
         done: &(dyn Fn(u32) + Sync),
-    ) -> Result<Vec<Vec<EpisodeResult>>, GpuError> {
+    ) -> Result<Landed, GpuError> {
         let counted = AtomicU32::new(0);
         let count = |groups: u32, episodes: u32| {
             let before = counted.fetch_add(episodes, Ordering::Relaxed);
@@ -99,16 +168,16 @@ impl<'g> GroupSimulators<'g> {
         match self {
             Self::Cpu(groups) => {
                 let done = |episodes| count(small(groups.len()), episodes);
-                let of_group = |cpu: &Cpu| cpu.simulate(episodes.clone(), &done);
-                Ok(groups.iter().map(of_group).collect())
+                let of_group = |cpu: &Cpu| cpu.simulate(packed.range.clone(), &done);
+                let simulate = || groups.iter().map(of_group).collect();
+                Ok(Landed::Cpu(pool.install(simulate)))
             }
             Self::Gpu(groups) => {
                 let all = small(groups.len());
                 let done = |episodes| count(all, episodes);
-                let groups = groups.iter_mut();
-                groups
-                    .map(|simulator| simulator.simulate(episodes.clone(), &done))
-                    .collect()
+                let groups = groups.iter_mut().zip(packed.batches);
+                let landed = groups.map(|(simulator, packed)| simulator.fly(packed, &done));
+                landed.collect::<Result<_, _>>().map(Landed::Gpu)
             }
         }
     }

@@ -4,5 +4,6 @@ mod cma_es;
 mod compare;
 mod detail;
 mod digests;
+mod large_tables;
 mod shards;
 mod tune;

@@ -4,19 +4,20 @@ use super::GpuError;
 use super::buffers::{Buffers, batch, span_stride, storage_limit};
 use super::device::{Gpu, Use};
 use super::instant::TraceInstant;
-use super::layout::{self, OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::layout::{OUTCOME_WORDS, SHOWN_WORDS, Span, word};
+use super::packer::{LandedBatch, PackedBatch, Packer};
 use super::pipeline::{ENTRIES, Entry, Pipeline, binding_layout, shape};
 use super::times::GpuTimes;
 use super::tuning::Tuning;
 use super::uniforms::setting;
 use crate::backend::EpisodeResult;
 use crate::campaign::AgentGroup;
-use crate::draw::{Episode, draw};
+use crate::draw::Episode;
 use crate::model::controller::kinds::Controller;
-use crate::model::episode::{AgentOutcome, Model};
+use crate::model::episode::Model;
 use crate::synthesis::LoopGains;
-use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What a dispatch should take: short beside the seconds after which a display driver resets the device, long beside
@@ -31,7 +32,7 @@ const SAMPLES: u32 = 64;
 pub struct GpuSimulator<'g> {
     gpu: &'g Gpu,
     model: Model<f32>,
-    controllers: Vec<Controller<f32>>,
+    packer: Arc<Packer>,
     pipelines: Vec<Pipeline>,
     layout: wgpu::BindGroupLayout,
     buffers: Buffers,
@@ -109,8 +110,13 @@ impl<'g> GpuSimulator<'g> {
             gpu,
             steps: tuning.steps.unwrap_or(FIRST_STEPS).clamp(1, most_steps),
             most_steps,
+            packer: Arc::new(Packer::new(
+                &gpu.adapter().name,
+                &model,
+                controllers.len(),
+                &pipelines,
+            )),
             model,
-            controllers,
             pipelines,
             layout,
             buffers,
@@ -147,6 +153,12 @@ impl<'g> GpuSimulator<'g> {
         self.times
     }
 
+    /// What packs batches for this simulator and unpacks them, beside its work.
+    #[must_use]
+    pub fn packer(&self) -> Arc<Packer> {
+        Arc::clone(&self.packer)
+    }
+
     /// Simulates a range of at most [`GpuSimulator::batch`] episodes under every controller, in order; `done` is told
     /// how many episodes' worth of steps came to an end.
     ///
@@ -157,13 +169,25 @@ impl<'g> GpuSimulator<'g> {
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
     ) -> Result<Vec<EpisodeResult>, GpuError> {
-        let group = &self.model.group;
+        let packed = self.packer.pack(episodes.collect());
+        let landed = self.fly(packed, done)?;
+        self.packer.unpack(landed)
+    }
+
+    /// The part of [`GpuSimulator::simulate`] that needs the device.
+    ///
+    /// # Errors
+    /// If the device fails; nothing of the batch is known then.
+    pub fn fly(
+        &mut self,
+        packed: PackedBatch,
+        done: &(dyn Fn(u32) + Sync),
+    ) -> Result<LandedBatch, GpuError> {
         let start = Instant::now();
-        let episodes: Vec<Episode> = episodes
-            .into_par_iter()
-            .map(|episode| draw(group, episode))
-            .collect();
-        self.load(&episodes)?;
+        self.load(&packed)?;
+        // What is on the device takes no more room here.
+        let episodes = packed.episodes;
+        drop(packed.draws);
         self.times.upload_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
@@ -178,9 +202,9 @@ impl<'g> GpuSimulator<'g> {
         self.times.kernel_s += start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let simulated = self.simulated(episodes)?;
+        let landed = self.landed(episodes)?;
         self.times.read_back_s += start.elapsed().as_secs_f64();
-        Ok(simulated)
+        Ok(landed)
     }
 
     /// Simulates some episodes and shows them every `every` steps, from the start to the end; returns how each ended,
@@ -199,13 +223,10 @@ impl<'g> GpuSimulator<'g> {
         if episodes.is_empty() {
             return Ok(Vec::new());
         }
-        let episodes: Vec<Episode> = episodes
-            .iter()
-            .map(|&episode| draw(group, episode))
-            .collect();
+        let packed = self.packer.pack(episodes.to_vec());
         let samples = word(self.samples(episodes.len()));
         self.allocate(episodes.len(), samples as usize)?;
-        self.load(&episodes)?;
+        self.load(&packed)?;
         let mut instants = (0..steps).step_by(every as usize).chain([steps]).peekable();
         while instants.peek().is_some() {
             let instants: Vec<u32> = instants.by_ref().take(samples as usize).collect();
@@ -240,7 +261,8 @@ impl<'g> GpuSimulator<'g> {
                 });
             }
         }
-        self.simulated(episodes)
+        let landed = self.landed(packed.episodes)?;
+        self.packer.unpack(landed)
     }
 
     /// Replaces the buffers.
@@ -261,66 +283,29 @@ impl<'g> GpuSimulator<'g> {
     }
 
     /// Sends the draws of a batch and sets the initial state.
-    fn load(&mut self, episodes: &[Episode]) -> Result<(), GpuError> {
+    fn load(&mut self, packed: &PackedBatch) -> Result<(), GpuError> {
+        let episodes = packed.episodes.len();
         // A trace leaves smaller buffers than a batch needs.
-        if episodes.len() > self.buffers.batch {
-            self.allocate(episodes.len(), 0)?;
+        if episodes > self.buffers.batch {
+            self.allocate(episodes, 0)?;
         }
-        for (number, (part, buffers)) in self
-            .model
-            .parts
-            .iter()
-            .zip(&self.buffers.shared)
-            .enumerate()
-        {
-            let Some(pipeline) = self
-                .pipelines
-                .iter()
-                .find(|pipeline| pipeline.part == number)
-            else {
-                continue;
-            };
-            let (group, first) = (&self.model.group, part.channels.start);
-            let draws = layout::draws(group, &pipeline.shape, first, episodes);
-            self.gpu.upload(&buffers.draws, &draws)?;
+        for (draws, buffers) in packed.draws.iter().zip(&self.buffers.shared) {
+            self.gpu.upload(&buffers.draws, draws)?;
         }
-        self.dispatch(episodes.len(), Entry::Start, 0..0, 0)
+        self.dispatch(episodes, Entry::Start, 0..0, 0)
     }
 
     /// Reads how the episodes of a batch ended.
-    fn simulated(&mut self, episodes: Vec<Episode>) -> Result<Vec<EpisodeResult>, GpuError> {
-        let group = &self.model.group;
-        let steps = group.time.steps;
-        let blank = vec![
-            vec![AgentOutcome::blank(group.channels().len()); group.team];
-            self.controllers.len()
-        ];
+    fn landed(&mut self, episodes: Vec<Episode>) -> Result<LandedBatch, GpuError> {
+        let steps = self.model.group.time.steps;
         self.dispatch(episodes.len(), Entry::Finish, steps..steps, 0)?;
-        let mut simulated: Vec<EpisodeResult> = episodes
-            .into_iter()
-            .map(|episode| EpisodeResult {
-                episode,
-                outcomes: blank.clone(),
-            })
-            .collect();
-        for (pipeline, buffers) in self.pipelines.iter().zip(&self.buffers.own) {
-            let words = pipeline.invocations(simulated.len()) * OUTCOME_WORDS;
-            let words = self.gpu.read(&buffers.output, &buffers.read_back, words)?;
-            layout::take_outcomes(
-                &self.model.group,
-                &pipeline.shape,
-                self.model.parts[pipeline.part].channels.start,
-                &words,
-                simulated.iter_mut().map(|simulated| {
-                    (
-                        simulated.episode.index,
-                        &mut simulated.outcomes[pipeline.controller],
-                    )
-                }),
-            )
-            .map_err(|error| self.gpu.driver_error(error))?;
-        }
-        Ok(simulated)
+        let pipelines = self.pipelines.iter().zip(&self.buffers.own);
+        let words = pipelines.map(|(pipeline, buffers)| {
+            let words = pipeline.invocations(episodes.len()) * OUTCOME_WORDS;
+            self.gpu.read(&buffers.output, &buffers.read_back, words)
+        });
+        let words = words.collect::<Result<_, _>>()?;
+        Ok(LandedBatch { episodes, words })
     }
 
     /// Chooses the steps of the next dispatch by the time that the last one took.

@@ -10,6 +10,7 @@ mod device;
 mod instant;
 mod iterations;
 pub(crate) mod layout;
+mod packer;
 mod pipeline;
 pub(crate) mod shape;
 pub(crate) mod signals;
@@ -25,6 +26,7 @@ mod probes;
 pub use adapter::{Adapter, AdapterKind, AdapterReport, Wanted, adapters};
 pub use batch::GpuSimulator;
 pub use device::Gpu;
+pub use packer::{LandedBatch, PackedBatch, Packer};
 pub use times::GpuTimes;
 pub use tuning::Tuning;
 

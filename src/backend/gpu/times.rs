@@ -10,7 +10,7 @@ use std::ops::Sub;
 pub struct GpuTimes {
     /// Shaders to machine code.
     pub compile_s: f64,
-    /// Drawing episodes and sending them.
+    /// Sending draws.
     pub upload_s: f64,
     /// The episode loop.
     pub kernel_s: f64,

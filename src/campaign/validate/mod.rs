@@ -74,6 +74,7 @@ pub(super) fn validate(
         name: file.name,
         seed: file.seed,
         episodes: file.episodes,
+        episodes_given: source.episodes,
         controllers,
         time,
         strata,

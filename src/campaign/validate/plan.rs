@@ -6,6 +6,7 @@ use crate::campaign::file::*;
 use crate::campaign::plan::{ALL, Strata, Stratum, StratumFaults};
 use crate::util::hidden::is_hidden;
 use crate::util::suggest::did_you_mean;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Longest name of a fault or stratum: it heads lines and fills cells.
@@ -31,22 +32,27 @@ impl Check<'_> {
             }
         }
         let mut names: Vec<Arc<str>> = Vec::new();
+        let mut taken: HashSet<String> = own.iter().flatten().map(ToString::to_string).collect();
+        // Of each plain name, the numbers that were tried.
+        let mut tried: HashMap<String, usize> = HashMap::new();
         for (file, own_name) in files.iter().zip(&own) {
-            let taken = |name: &str| {
-                own.contains(&Some(name)) || names.iter().any(|other| other.as_ref() == name)
-            };
             let plain = format!("{} {}", file.target.name(), file.kind.name());
             let numbered = |k: usize| match k {
                 1 => plain.clone(),
                 _ => format!("{plain} {k}"),
             };
-            // One of so many is free.
-            let mut free = (1..=2 * files.len())
-                .map(numbered)
-                .filter(|name| !taken(name));
             let name = match own_name {
                 Some(name) => (*name).to_string(),
-                None => free.next().unwrap_or_else(|| plain.clone()),
+                None => {
+                    let tried = tried.entry(plain.clone()).or_default();
+                    loop {
+                        *tried += 1;
+                        let name = numbered(*tried);
+                        if taken.insert(name.clone()) {
+                            break name;
+                        }
+                    }
+                }
             };
             names.push(name.into());
         }

@@ -73,16 +73,7 @@ fn document(view: &EpisodeView<'_>) -> Document {
             .iter()
             .map(|trace| ending(view, trace))
             .collect(),
-        warnings: view
-            .replay
-            .stand_in
-            .iter()
-            .map(|reason| {
-                format!(
-                    "Simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
-                )
-            })
-            .collect(),
+        warnings: view.replay.cautions(),
         sections,
         ..Document::default()
     }

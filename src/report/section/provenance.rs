@@ -2,6 +2,7 @@
 
 use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::report::run_data::RunData;
+use crate::report::times::times;
 use crate::simulation::Segment;
 use crate::simulation::cross_check::CrossCheck;
 
@@ -47,18 +48,7 @@ pub(crate) fn section(data: &RunData) -> Section {
     if let Some(check) = &manifest.cross_check {
         add("cross-check with f64 on the CPU", cross_checked(check));
     }
-    let times = manifest.times;
-    add(
-        "wall-clock times",
-        format!(
-            "synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s",
-            times.synthesis_s,
-            times.loop_s,
-            times.cross_check_s,
-            times.statistics_s,
-            times.writing_s
-        ),
-    );
+    add("wall-clock times", times(manifest));
     let mut blocks = vec![Block::Grid(grid)];
     if !manifest.overlay.is_empty() {
         let settings = manifest

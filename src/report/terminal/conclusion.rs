@@ -1,6 +1,6 @@
 //! What a run comes to: its verdict and its requirements.
 
-use super::detail::Detail;
+use super::amount::Amount;
 use crate::campaign::Campaign;
 use crate::report::page::document::{Block, Cell, Grid, Section};
 use crate::report::requirements::found;
@@ -20,7 +20,7 @@ pub(super) fn in_short(campaign: &Campaign, findings: &Findings) -> Section {
 }
 
 /// On what terms the controllers are compared.
-pub(super) fn terms(findings: &Findings, detail: Detail) -> Section {
+pub(super) fn terms(findings: &Findings, amount: Amount) -> Section {
     let mut grid = Grid::new([
         "controller",
         "channels",
@@ -54,7 +54,7 @@ pub(super) fn terms(findings: &Findings, detail: Detail) -> Section {
         ]);
     }
     let unlike = findings.results.unlike.iter().map(Block::text);
-    let unlike = unlike.filter(|_| detail == Detail::Everything);
+    let unlike = unlike.filter(|_| amount == Amount::Everything);
     let blocks = unlike.chain([Block::Grid(grid)]).collect();
     Section::explained(
         "on what terms",

@@ -1,8 +1,8 @@
 //! What a run found, for people.
 
+use super::amount::Amount;
 use super::attenuation;
 use super::conclusion::{in_short, requirements, terms};
-use super::detail::Detail;
 use super::pairs::pairs;
 use super::screening::strata;
 use crate::campaign::{ALL, Campaign};
@@ -10,12 +10,12 @@ use crate::draw::quantities::title;
 use crate::report::notes::caveats;
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::text::text;
+use crate::report::times::times;
 use crate::results::sensitivity::{SensitivityResult, WorstEpisode};
 use crate::results::{FailureRate, RateMethod};
 use crate::run::Findings;
 use crate::run::manifest::Manifest;
 use crate::run::replay::command;
-use crate::simulation::Times;
 use crate::simulation::cross_check::CrossCheck;
 use crate::statistics::SIGNIFICANCE;
 use crate::util::format::{digits, rounded_up};
@@ -25,17 +25,17 @@ use std::path::Path;
 const STRONGEST: usize = 3;
 
 /// The findings of a run; what they come to stands at the end, where a terminal shows it.
-pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path, detail: Detail) -> String {
+pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path, amount: Amount) -> String {
     let manifest = &findings.manifest;
     let [by_stratum, harm] = strata(campaign, findings);
-    let sections = match detail {
-        Detail::Screen => vec![
+    let sections = match amount {
+        Amount::Screen => vec![
             failure_rates(campaign, findings),
             rms_errors(campaign, findings),
-            terms(findings, detail),
+            terms(findings, amount),
             harm,
         ],
-        Detail::Everything => vec![
+        Amount::Everything => vec![
             failure_rates(campaign, findings),
             by_stratum,
             harm,
@@ -43,11 +43,11 @@ pub fn findings(campaign: &Campaign, findings: &Findings, out: &Path, detail: De
             pairs(campaign, findings),
             what_matters(campaign, findings),
             worst(findings, out),
-            terms(findings, detail),
+            terms(findings, amount),
         ],
     };
     let conclusion = [
-        written(manifest.times, out, detail),
+        written(manifest, out, amount),
         requirements(&manifest.requirements),
         in_short(campaign, findings),
     ];
@@ -178,20 +178,13 @@ fn rms_errors(campaign: &Campaign, findings: &Findings) -> Section {
 }
 
 /// Where the files are, and how long it all took.
-fn written(times: Times, out: &Path, detail: Detail) -> Section {
+fn written(manifest: &Manifest, out: &Path, amount: Amount) -> Section {
     let out = out.display();
-    let text = match detail {
-        Detail::Screen => {
+    let text = match amount {
+        Amount::Screen => {
             format!("written to {out}: report.html has the whole, --verbose prints more of it")
         }
-        Detail::Everything => format!(
-            "written to {out} (synthesis {:.1} s, simulation {:.1} s, cross-check {:.1} s, statistics {:.1} s, writing {:.1} s)",
-            times.synthesis_s,
-            times.loop_s,
-            times.cross_check_s,
-            times.statistics_s,
-            times.writing_s
-        ),
+        Amount::Everything => format!("written to {out} ({})", times(manifest)),
     };
     Section::new("", vec![Block::Text(text)])
 }

@@ -1,9 +1,9 @@
 //! What the commands print.
 
+mod amount;
 mod attenuation;
 mod comparison;
 mod conclusion;
-mod detail;
 mod devices;
 mod drawn;
 mod effort;
@@ -21,8 +21,8 @@ mod tuning;
 mod written;
 
 pub use crate::report::page::text::BAD;
+pub use amount::Amount;
 pub use comparison::comparison;
-pub use detail::Detail;
 pub use devices::devices;
 pub use findings::findings;
 pub use gains::{gains, synthesis};

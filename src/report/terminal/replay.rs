@@ -24,11 +24,7 @@ pub fn replay(
     let time = replay.campaign.time;
     let settle_s = f64::from(time.settle_step) * time.step_s;
     let agents = 0..replay.outcomes.len();
-    let stand_in = replay.stand_in.iter().map(|reason| {
-        Block::Text(format!(
-            "simulated in f64 on the CPU, so digits beyond single precision differ from the run's: {reason}"
-        ))
-    });
+    let cautions = replay.cautions().into_iter().map(Block::Text);
     let written = Block::Text(format!(
         "written to {} ({} samples), the figures to {} and {}",
         files.table.display(),
@@ -42,7 +38,7 @@ pub fn replay(
         subtitle: format!("errors from {settle_s} s on"),
         sections: vec![
             Section::new("", agents.map(|agent| of_agent(replay, agent)).collect()),
-            Section::new("", explanation.chain(stand_in).chain([written]).collect()),
+            Section::new("", explanation.chain(cautions).chain([written]).collect()),
         ],
         ..Document::default()
     })
@@ -156,6 +152,7 @@ pub fn replay_json(
         "file": files.table.display().to_string(), "samples": replay.snapshots.len(),
         "figures": [files.page.display().to_string(), files.picture.display().to_string()],
         "stand_in": replay.stand_in,
+        "differs": replay.differs,
         "agents": agents.enumerate().map(of_agent).collect::<Vec<_>>(),
     })
 }

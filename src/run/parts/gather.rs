@@ -57,9 +57,9 @@ impl Parts {
         if let Some((_, own)) = self.read(index)? {
             let common = own.len().min(bytes.len());
             if own[..common] != bytes[..common] {
-                return Err(OutputError::DamagedPart {
+                return Err(OutputError::Contradiction {
                     path: self.dir.join(self.name(index)),
-                    reason: format!("{} holds other numbers of its episodes", from.display()),
+                    other: from.to_path_buf(),
                 });
             }
         }

@@ -9,6 +9,7 @@ use crate::run::directory::OutputDir;
 use crate::run::error::{GAINS, OutputError};
 use crate::run::lock::{LOCK, Lock, NotHeld, Sharing};
 use crate::run::shard::{Shard, Shards};
+use crate::run::sink::sync_names;
 use crate::simulation::Engine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -350,6 +351,7 @@ impl Parts {
         let encoded = file::encoded(&header, episodes).map_err(Error::other);
         let encoded = encoded.map_err(|error| self.unwritable(error))?;
         self.folder().write(&self.name(index), &encoded)?;
+        sync_names(&self.dir).map_err(|error| self.unwritable(error))?;
         self.held.insert(index, header);
         Ok(())
     }

@@ -129,7 +129,7 @@ fn a_run_whose_driver_has_changed_is_replayed_on_the_reference_and_says_so() {
         manifest.replace(&adapter.driver, "another 1.0"),
     );
     let said = place.succeeds(&["replay", "out", "--episode", "0"]);
-    assert!(said.contains("simulated in f64 on the CPU"), "{said}");
+    assert!(said.contains("Simulated in f64 on the CPU"), "{said}");
     assert!(
         said.contains("with the driver another 1.0 is not here"),
         "{said}"

@@ -1,8 +1,10 @@
 //! A run whose files were changed is not read, and one whose campaign names other files is not replaced.
 
 use super::Place;
-use crate::common::repository;
+use crate::common::{repository, without_hash};
 use std::fs;
+use std::process::Command;
+use urts_mc::run::directory::OutputDir;
 
 #[test]
 fn a_changed_or_missing_file_is_named_and_nothing_is_made_of_it() {
@@ -139,4 +141,91 @@ fn a_run_with_another_robot_or_other_gains_does_not_replace_the_earlier_one() {
         "{}",
         refused.stderr
     );
+}
+
+#[test]
+fn an_episode_that_is_not_the_one_of_the_runs_tables_is_shown_with_a_word_about_it() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    place.succeeds(&["run", "c.toml", "--out", "other", "--seed", "7"]);
+    let replay = ["replay", "out", "--episode", "1", "--json"];
+    assert!(place.json(&replay)["differs"].is_null());
+    // Runs of older versions have no hashes of their files, so that only the numbers tell.
+    let manifest = without_hash(&place.read("out/manifest.json"));
+    let mut manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    manifest["files"] = serde_json::json!({});
+    place.write("out/manifest.json", manifest.to_string());
+    assert!(place.json(&replay)["differs"].is_null());
+    place.write(
+        "out/channels.parquet",
+        place.read_bytes("other/channels.parquet"),
+    );
+    let said = place.json(&replay)["differs"].to_string();
+    assert!(said.contains("channels.parquet has rmse = "), "{said}");
+    place.write(
+        "out/episodes.parquet",
+        place.read_bytes("other/episodes.parquet"),
+    );
+    let said = place.succeeds(&["replay", "out", "--episode", "1"]);
+    // The first that differs is one of the PID's.
+    let [table, agent] = [
+        "is not the episode of the run: episodes.parquet has ",
+        " (agent 0 under pid)",
+    ];
+    assert!(said.contains(table) && said.contains(agent), "{said}");
+    let page = place.read("out/replay-1-ftc.html");
+    assert!(page.contains("This is not the episode of the run"));
+}
+
+#[test]
+fn a_run_that_is_being_replaced_is_neither_reported_nor_replayed() {
+    let place = Place::smoke(&[]);
+    place.succeeds(&["run", "c.toml", "--out", "out"]);
+    let campaign = urts_mc::campaign::Campaign::load(&place.path("c.toml")).unwrap();
+    let held = OutputDir::claim(&place.path("out"), &campaign, false).unwrap();
+    for command in [
+        &["report", "out"][..],
+        &["replay", "out", "--episode", "0"],
+        &["replay", "out", "--episode", "0", "--out", "there.parquet"],
+    ] {
+        place.refuses(command, 2, &["out: is being written by process "]);
+    }
+    drop(held);
+    place.succeeds(&["report", "out"]);
+    place.succeeds(&["replay", "out", "--episode", "0"]);
+    // Nothing is made of what is no run, not even a lock.
+    place.refuses(&["report", "absent"], 2, &["absent: holds no readable run"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_limit_of_the_address_space_does_not_hold_is_refused_before_work_begins() {
+    let place = Place::smoke(&[]);
+    let program = env!("CARGO_BIN_EXE_urts-mc");
+    let limited = |kib: u32, episodes: &str| {
+        let command =
+            format!("ulimit -v {kib} && exec {program} check c.toml --episodes {episodes}");
+        let mut shell = Command::new("sh");
+        let ended = shell
+            .args(["-c", &command])
+            .current_dir(place.path(""))
+            .output();
+        let ended = ended.unwrap();
+        (
+            ended.status.code(),
+            String::from_utf8(ended.stderr).unwrap(),
+        )
+    };
+    // As much as many cores may take beside what episodes take.
+    let (wide, narrow) = (64 << 20, 900 << 10);
+    assert_eq!(limited(wide, "3"), (Some(0), String::new()));
+    let (code, said) = limited(narrow, "5000000");
+    assert_eq!(code, Some(2), "{said}");
+    for word in [
+        "--episodes = 5000000: their statistics take about ",
+        " of memory, and ",
+        "give ",
+    ] {
+        assert!(said.contains(word), "{said}");
+    }
 }

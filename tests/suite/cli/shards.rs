@@ -98,7 +98,7 @@ fn what_is_no_shard_of_the_same_run_is_refused_by_merge() {
     fly("d", "1/2", &["--simd", "scalar"]);
     let words = [
         "c/.urts-mc-parts/part-00000000",
-        "d holds other numbers of its episodes",
+        "is not what d holds of the same episodes",
     ];
     place.refuses(&["merge", "c", "d"], 1, &words);
     // Of parts that were changed, the range is missing.

@@ -2,7 +2,7 @@
 
 /// How much of the findings is said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Detail {
+pub enum Amount {
     /// What fits a screen: the rest is in the report.
     Screen,
     /// Everything that can be said without figures.
