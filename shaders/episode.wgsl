@@ -100,7 +100,7 @@ fn resume() {
         last_arrived = stored_number(MEMORY + 5u);
     }
     if N_LEAKS > 0u {
-        published[command_slot(own.agent)] = last_command;
+        slot_set(command_slot(), own.channel, own.agent, last_command);
         workgroupBarrier();
     }
     team_state_hold(span.first);

@@ -91,12 +91,12 @@ fn leg_accelerate(stage: u32) {
         leg_seen(stage, VELOCITY),
         leg_seen(stage, TORQUE),
     );
-    published[slot(stage, TORQUE, 0u, own.agent)] = acceleration[0];
-    published[slot(stage, TORQUE, 1u, own.agent)] = acceleration[1];
-    published[slot(stage, TORQUE, 2u, own.agent)] = acceleration[2];
-    published[slot(stage, TORQUE, 3u, own.agent)] = acceleration[3];
-    published[slot(stage, TORQUE, 4u, own.agent)] = acceleration[4];
-    published[slot(stage, TORQUE, 5u, own.agent)] = acceleration[5];
+    slot_set(slot(stage, TORQUE), 0u, own.agent, acceleration[0]);
+    slot_set(slot(stage, TORQUE), 1u, own.agent, acceleration[1]);
+    slot_set(slot(stage, TORQUE), 2u, own.agent, acceleration[2]);
+    slot_set(slot(stage, TORQUE), 3u, own.agent, acceleration[3]);
+    slot_set(slot(stage, TORQUE), 4u, own.agent, acceleration[4]);
+    slot_set(slot(stage, TORQUE), 5u, own.agent, acceleration[5]);
 }
 
 // What all joints of the leg have published.

@@ -36,23 +36,34 @@ var<private> own: Own;
 // What a channel shows to others, in two halves that the stages use in turn: one barrier per stage is enough, since who
 // writes to a half has passed the barrier after which the others had read it. Where commands leak, the last ones
 // follow: they are written after the first barrier of a step and read before that of the next.
-var<workgroup> published: array<f32, PUBLISHED * WORKGROUP>;
+//
+// An index for each dimension: where channel and agent are constants, so is all but the lane, and the check that an
+// index is within its array is one for all of them.
+var<workgroup> published: array<array<array<array<f32, LANES>, TEAM>, NC>, PUBLISHED>;
 
-fn slot(stage: u32, what: u32, channel: u32, agent: u32) -> u32 {
-    return (((stage & 1u) * SHARED + what) * NC + channel) * (TEAM * LANES) + agent * LANES + own.lane;
+fn slot(stage: u32, what: u32) -> u32 {
+    return (stage & 1u) * SHARED + what;
+}
+
+fn command_slot() -> u32 {
+    return 2u * SHARED;
+}
+
+fn slot_get(slot: u32, channel: u32, agent: u32) -> f32 {
+    return published[slot][channel][agent][own.lane];
+}
+
+fn slot_set(slot: u32, channel: u32, agent: u32, value: f32) {
+    published[slot][channel][agent][own.lane] = value;
 }
 
 // What another channel of this agent has published at this stage.
 fn seen(stage: u32, what: u32, channel: u32) -> f32 {
-    return published[slot(stage, what, channel, own.agent)];
+    return slot_get(slot(stage, what), channel, own.agent);
 }
 
 fn publish(stage: u32, what: u32, value: f32) {
-    published[slot(stage, what, own.channel, own.agent)] = value;
-}
-
-fn command_slot(agent: u32) -> u32 {
-    return (2u * SHARED * NC + own.channel) * (TEAM * LANES) + agent * LANES + own.lane;
+    slot_set(slot(stage, what), own.channel, own.agent, value);
 }
 
 // x and x' of the channel at the state of a stage.
@@ -104,7 +115,7 @@ fn agent_respond(stage: u32, at: Reference, step: u32) -> Response {
 fn team_sum(stage: u32) -> f32 {
     var sum = 0.0;
     for (var agent = 0u; agent < TEAM; agent++) {
-        sum = sum + published[slot(stage, POSITION, own.channel, agent)];
+        sum = sum + slot_get(slot(stage, POSITION), own.channel, agent);
     }
     return finite(sum);
 }
@@ -114,7 +125,7 @@ fn team_commands() -> f32 {
     var sum = 0.0;
     if N_LEAKS > 0u {
         for (var agent = 0u; agent < TEAM; agent++) {
-            sum = sum + published[command_slot(agent)];
+            sum = sum + slot_get(command_slot(), own.channel, agent);
         }
         sum = finite(sum);
     }
@@ -141,7 +152,7 @@ fn agent_remember(response: Response, at: Reference, step: u32) {
     own.held_feedback = agent_feedback(0u, step);
     exogenous_inputs_remember(step, response.sent, agent_motion(0u, at));
     if N_LEAKS > 0u {
-        published[command_slot(own.agent)] = last_command;
+        slot_set(command_slot(), own.channel, own.agent, last_command);
     }
 }
 

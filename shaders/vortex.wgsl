@@ -39,9 +39,9 @@ fn jet_share(vortex: Vortex, here: vec3<f32>, other: vec3<f32>) -> f32 {
 // Where an agent shows itself to be at a stage.
 fn agent_place(stage: u32, agent: u32) -> vec3<f32> {
     return vec3(
-        finite(published[slot(stage, POSITION, 0u, agent)]),
-        finite(published[slot(stage, POSITION, 1u, agent)]),
-        finite(published[slot(stage, POSITION, 2u, agent)]),
+        finite(slot_get(slot(stage, POSITION), 0u, agent)),
+        finite(slot_get(slot(stage, POSITION), 1u, agent)),
+        finite(slot_get(slot(stage, POSITION), 2u, agent)),
     );
 }
 

@@ -13,7 +13,7 @@ use polars::prelude::DataFrame;
 use std::time::{Duration, Instant};
 
 /// Rows of a file of a large table, at most: those that have more are a folder of such files, which the readers of
-/// Parquet take as one table. A file of channels is about 1 GB.
+/// Parquet take as one table. A file of channels is about 250 MB.
 pub(super) const FILE_ROWS: usize = 32 * ROW_GROUP;
 
 /// Writes the tables that are made when all is known, as Parquet and as CSV.

@@ -313,8 +313,8 @@ pub(super) const OF_SIGNALS: &[Control] = &[
     ),
     control(
         "vortex",
-        "finite(published[slot(stage, POSITION, 1u, agent)])",
-        "published[slot(stage, POSITION, 1u, agent)]",
+        "finite(slot_get(slot(stage, POSITION), 1u, agent))",
+        "slot_get(slot(stage, POSITION), 1u, agent)",
         "vortex_force",
     ),
     control(

@@ -335,8 +335,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "team",
-        "what) * NC + channel) * (TEAM * LANES) + agent * LANES + own.lane",
-        "what) * NC + channel) * (TEAM * LANES) + agent + TEAM * own.lane",
+        "return published[slot][channel][agent][own.lane]",
+        "return published[slot][channel][own.agent][own.lane]",
         "slot",
     ),
     control(
@@ -377,16 +377,11 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "team",
-        "array<f32, PUBLISHED * WORKGROUP>",
-        "array<f32, 2u * SHARED * WORKGROUP>",
+        "NC>, PUBLISHED>",
+        "NC>, 2u * SHARED>",
         "team_commands",
     ),
-    control(
-        "team",
-        "(2u * SHARED * NC + own.channel)",
-        "(2u * SHARED * NC)",
-        "slot",
-    ),
+    control("team", "return 2u * SHARED;", "return SHARED;", "slot"),
     control(
         "team",
         "exogenous_inputs_remember(step, response.sent, agent_motion",

@@ -101,7 +101,7 @@ fn load() {
         at += 5u;
     }
     if N_LEAKS > 0u {
-        published[command_slot(own.agent)] = last_command;
+        slot_set(command_slot(), own.channel, own.agent, last_command);
         workgroupBarrier();
     }
 }

@@ -331,7 +331,14 @@ pub(super) const SIGNALS: &[Probe] = &[
 pub(super) const GROUPS: &[Probe] = &[
     probe!(
         "slot",
-        ["slot", "seen", "publish", "command_slot"],
+        [
+            "slot",
+            "slot_get",
+            "slot_set",
+            "seen",
+            "publish",
+            "command_slot"
+        ],
         over_shapes!(team::slots)
     ),
     probe!("team_sum", ["team_sum"], over_shapes!(team::team_sum)),

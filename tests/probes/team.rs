@@ -33,19 +33,19 @@ pub(super) fn slots<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
         publish(stage, SHARED - 1u, number(0u));
         workgroupBarrier();
         answer_number(0u, seen(stage, SHARED - 1u, (own.channel + 1u) % NC));
-        answer(1u, slot(stage, SHARED - 1u, own.channel, (own.agent + 1u) % TEAM));
-        answer(2u, command_slot((own.agent + 1u) % TEAM));";
+        answer_number(1u, slot_get(slot(stage, SHARED - 1u), own.channel, (own.agent + 1u) % TEAM));
+        answer(2u, slot(stage, SHARED - 1u));
+        answer(3u, command_slot());";
     let (shape, team) = (&world.shape, world.shape.team);
-    world.check(lab, body, 3, sized([1.0]), |scene| {
-        let lane = scene.index % shape.lanes;
+    world.check(lab, body, 4, sized([1.0]), |scene| {
         scene.each(|scene, a, c| {
-            let other = scene.number(a, (c + 1) % NC, 0);
-            scene.answer_number(a, c, other);
-            let half = scene.stage % 2 * shape.shared() + shape.shared() - 1;
-            let place = shape.place(c, (a + 1) % team, lane);
+            for (a_other, c_other) in [(a, (c + 1) % NC), ((a + 1) % team, c)] {
+                let other = scene.number(a_other, c_other, 0);
+                scene.answer_number(a, c, other);
+            }
+            let slot = scene.stage % 2 * shape.shared() + shape.shared() - 1;
             // Commands lie behind both halves.
-            for half in [half, 2 * shape.shared()] {
-                let slot = half * shape.workgroup() + place;
+            for slot in [slot, 2 * shape.shared()] {
                 scene.answer(a, c, Expected::Bits(slot as u32));
             }
         });
@@ -243,7 +243,7 @@ pub(super) fn remembered<P: Flies<NC, NX>, const NC: usize, const NS: usize, con
         agent_remember(response, asked_reference(), step);
         if N_LEAKS > 0u {{
             workgroupBarrier();
-            answer_number(0u, published[command_slot((own.agent + 1u) % TEAM)]);
+            answer_number(0u, slot_get(command_slot(), own.channel, (own.agent + 1u) % TEAM));
         }}"
     );
     let (leaks, team) = (world.shape.leaks(), world.shape.team);

@@ -367,6 +367,8 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
     (
         &[
             "slot",
+            "slot_get",
+            "slot_set",
             "command_slot",
             "seen",
             "publish",

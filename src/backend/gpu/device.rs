@@ -2,6 +2,7 @@
 
 use super::GpuError;
 use super::adapter::{self, Adapter, MEMORY_PERCENT, Wanted};
+use super::unrolling::unrolled;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -148,7 +149,7 @@ impl Gpu {
         }
     }
 
-    /// Compiles the entry points of a shader text, in their order.
+    /// Compiles the entry points of a shader text, whose loops are written out first, in their order.
     pub(super) fn compile<const N: usize>(
         &self,
         text: &str,
@@ -161,7 +162,7 @@ impl Gpu {
                     .device
                     .create_shader_module(wgpu::ShaderModuleDescriptor {
                         label: None,
-                        source: wgpu::ShaderSource::Wgsl(text.into()),
+                        source: wgpu::ShaderSource::Wgsl(unrolled(text).into()),
                     });
                 let layout = self
                     .device

@@ -1,9 +1,9 @@
 //! How many steps a dispatch may take: a bound on the iterations of all loops that one invocation goes through, stated
 //! for every adapter.
 //!
-//! A loop counts once for each look at its condition, the last one included. Every loop of `shaders/` counts, though a
-//! compiler unrolls some of them: which ones depends on the driver's estimate of their cost. A loop that a campaign may
-//! leave out counts where it is there.
+//! A loop counts once for each look at its condition, the last one included. Every loop of `shaders/` counts, though
+//! short ones are written out and a compiler unrolls others: which ones depends on the driver's estimate of their cost.
+//! A loop that a campaign may leave out counts where it is there.
 
 use super::GpuError;
 use super::adapter::AdapterKind;

@@ -18,6 +18,7 @@ mod source;
 mod times;
 mod tuning;
 pub(crate) mod uniforms;
+mod unrolling;
 
 #[cfg(test)]
 #[path = "../../../tests/probes/mod.rs"]
@@ -29,6 +30,8 @@ pub use device::Gpu;
 pub use packer::{LandedBatch, PackedBatch, Packer};
 pub use times::GpuTimes;
 pub use tuning::Tuning;
+#[doc(hidden)]
+pub use unrolling::unrolled;
 
 use crate::util::suggest::did_you_mean;
 use thiserror::Error;

@@ -231,8 +231,8 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "two joints change accelerations",
-        "TORQUE, 3u, own.agent)] = acceleration[3]",
-        "TORQUE, 3u, own.agent)] = acceleration[2]",
+        "3u, own.agent, acceleration[3]",
+        "3u, own.agent, acceleration[2]",
     ),
     (
         "joints are not damped",
@@ -295,8 +295,8 @@ const JETS: [Mutation; 9] = [
     ),
     (
         "y counts as x",
-        "finite(published[slot(stage, POSITION, 1u, agent)])",
-        "finite(published[slot(stage, POSITION, 0u, agent)])",
+        "finite(slot_get(slot(stage, POSITION), 1u, agent))",
+        "finite(slot_get(slot(stage, POSITION), 0u, agent))",
     ),
     (
         "gravity pulls along x",
