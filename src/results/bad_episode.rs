@@ -18,6 +18,14 @@ pub(super) struct BadEpisode {
 }
 
 impl BadEpisode {
+    /// The same where so many episodes come before.
+    pub(super) fn later(self, before: usize) -> Self {
+        Self {
+            episode: self.episode + before,
+            ..self
+        }
+    }
+
     pub(super) fn new(
         campaign: &Campaign,
         (episode, status): (usize, Status),

@@ -205,6 +205,33 @@ impl Scores {
         }
     }
 
+    /// Adds the episodes that come next.
+    pub(crate) fn append(&mut self, next: Self) {
+        fn all<T>(own: &mut [Vec<T>], next: Vec<Vec<T>>) {
+            for (own, mut next) in own.iter_mut().zip(next) {
+                own.append(&mut next);
+            }
+        }
+        let before = self.episodes();
+        for (own, next) in self.worst.iter_mut().zip(next.worst) {
+            own.extend(next.into_iter().map(|bad| bad.later(before)));
+            own.sort_by(BadEpisode::order);
+            own.truncate(WORST);
+        }
+        all(&mut self.status, next.status);
+        all(&mut self.failed_step, next.failed_step);
+        all(&mut self.fault_occurs, next.fault_occurs);
+        for ((_, own), (_, mut next)) in self.conditions.iter_mut().zip(next.conditions) {
+            own.append(&mut next);
+        }
+        for (own, next) in self.groups.iter_mut().zip(next.groups) {
+            all(&mut own.status, next.status);
+            all(&mut own.rmse, next.rmse);
+            all(&mut own.channel_groups, next.channel_groups);
+            all(&mut own.fingerprint, next.fingerprint);
+        }
+    }
+
     /// Whether an episode ended the same under two controllers, to the last digit of every error of every agent.
     pub(crate) fn alike(&self, [a, b]: [usize; 2], episode: usize) -> bool {
         let alike = |own: &GroupScores| own.fingerprint[a][episode] == own.fingerprint[b][episode];

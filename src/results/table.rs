@@ -45,6 +45,19 @@ impl Values {
         }
     }
 
+    /// Adds the cells of a column of the same type.
+    fn append(&mut self, next: &mut Self) {
+        match (self, next) {
+            (Self::Real(own), Self::Real(next)) => own.append(next),
+            (Self::Count(own), Self::Count(next)) => own.append(next),
+            (Self::Word(own), Self::Word(next)) => own.append(next),
+            (Self::Name(own), Self::Name(next)) => own.append(next),
+            (Self::Flag(own), Self::Flag(next)) => own.append(next),
+            // One column has one type wherever it is filled.
+            _ => {}
+        }
+    }
+
     /// Adds empty cells up to a number of rows.
     fn fill(&mut self, rows: usize) {
         match self {
@@ -169,6 +182,25 @@ impl Table {
             Values::Count(_) | Values::Word(_) | Values::Name(_) | Values::Flag(_) => 0,
         };
         self.columns.iter().map(of_column).sum()
+    }
+
+    /// Adds the rows of another table, whose kinds of rows fill the same columns in the same order.
+    pub fn append(&mut self, mut next: Self) {
+        if next.is_empty() {
+            return;
+        }
+        if self.columns.is_empty() {
+            *self = next;
+            return;
+        }
+        let rows = [self.rows, next.rows];
+        for ((_, own), (_, more)) in self.columns.iter_mut().zip(&mut next.columns) {
+            // The last row may lack cells of the last columns.
+            own.fill(rows[0]);
+            more.fill(rows[1]);
+            own.append(more);
+        }
+        self.rows += next.rows;
     }
 
     /// Takes away the first rows, as a table of their own; all if there are no more.

@@ -62,13 +62,12 @@ impl Conclusion<'_> {
         let staging = Staging::within(self.out)?;
         let large = LargeTables::new(campaign, staging.files(), self.csv, self.file_rows);
         let made = tabulate(campaign, parts, self.pool, large)?;
-        let of_tables = start.elapsed().saturating_sub(made.writing);
-        times.statistics_s += of_tables.as_secs_f64();
+        times.statistics_s += start.elapsed().as_secs_f64();
         unless_more_is_there(self.out, self.interrupted.as_ref(), made.episodes())?;
 
         progress(Progress::CrossCheck);
         let start = Instant::now();
-        let (cross_check, cross_check_missing) = (self.check)(&made.tables.scores, &made.segments);
+        let (cross_check, cross_check_missing) = (self.check)(&made.scores, &made.segments);
         times.cross_check_s = start.elapsed().as_secs_f64();
 
         progress(Progress::Statistics);
@@ -78,11 +77,11 @@ impl Conclusion<'_> {
 
         progress(Progress::Writing);
         let start = Instant::now();
-        let found = Found::new(campaign, &made.tables.scores, &results, &flights);
+        let found = Found::new(campaign, &made.scores, &results, &flights);
         write_small(found, staging.files())?;
         staging.files().write(GAINS, self.gains_file)?;
         let files = records(staging.files().path(), counted())?;
-        times.writing_s = (made.writing + start.elapsed()).as_secs_f64();
+        times.writing_s = start.elapsed().as_secs_f64();
         let plan = parts.plan();
         let mut robots = plan.robots.clone();
         let manifest = Manifest {
@@ -134,7 +133,7 @@ fn statistics(
     made: &Tabulated,
     pool: &ThreadPool,
 ) -> (Results, Flights) {
-    let scores = &made.tables.scores;
+    let scores = &made.scores;
     let flights = pool.install(|| flights(campaign, gains, scores));
     let results = Results::of(campaign, gains, scores, &flights.paces, pool);
     (results, flights)

@@ -10,7 +10,7 @@ use crate::results::files::{Found, RUN_TABLES, Rows};
 use crate::results::table::Table;
 use crate::results::tables::Tables;
 use polars::prelude::DataFrame;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::Receiver;
 
 /// Rows of a file of a large table, at most: those that have more are a folder of such files, which the readers of
 /// Parquet take as one table. A file of channels is about 250 MB.
@@ -43,8 +43,8 @@ pub(super) struct LargeTables<'a> {
     file_rows: usize,
     /// By the place among all tables; none as long as there is no row.
     files: Vec<Option<LargeTable>>,
-    /// What writing took.
-    took: Duration,
+    /// Rows that fill no group yet.
+    rest: Tables,
 }
 
 /// The files of a table that grows.
@@ -71,25 +71,24 @@ impl<'a> LargeTables<'a> {
             csv,
             file_rows,
             files,
-            took: Duration::ZERO,
+            rest: Tables::new(campaign),
         }
     }
 
-    /// Writes what fills groups of rows, and takes it out of memory.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub(super) fn take(&mut self, tables: &mut Tables) -> Result<(), OutputError> {
-        self.take_from(tables, ROW_GROUP)
-    }
-
-    /// Writes what is left, and gives the files their names; how long writing took in all.
+    /// Writes rows as they come, in groups, and gives the files their names when there are no more.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub(super) fn finish(mut self, tables: &mut Tables) -> Result<Duration, OutputError> {
-        self.take_from(tables, 1)?;
-        let start = Instant::now();
+    pub(super) fn write(mut self, pieces: Receiver<Tables>) -> Result<(), OutputError> {
+        for mut piece in pieces {
+            for run_table in RUN_TABLES {
+                if let Rows::Large(of) = run_table.rows {
+                    of(&mut self.rest).append(std::mem::take(of(&mut piece)));
+                }
+            }
+            self.write_groups(ROW_GROUP)?;
+        }
+        self.write_groups(1)?;
         for (run_table, files) in RUN_TABLES.iter().zip(self.files) {
             let Some(files) = files else { continue };
             files.parquet.finish()?;
@@ -99,27 +98,30 @@ impl<'a> LargeTables<'a> {
                     .sync_folder(&format!("{}.parquet", run_table.name))?;
             }
         }
-        Ok(self.took + start.elapsed())
+        Ok(())
     }
 
     /// Writes groups of rows as long as there are so many.
-    fn take_from(&mut self, tables: &mut Tables, fewest: usize) -> Result<(), OutputError> {
+    fn write_groups(&mut self, fewest: usize) -> Result<(), OutputError> {
         for (place, run_table) in RUN_TABLES.iter().enumerate() {
             let Rows::Large(of) = run_table.rows else {
                 continue;
             };
-            let table = of(tables);
-            while table.rows() >= fewest {
-                let front = table.split_front(ROW_GROUP.min(self.file_rows));
-                let start = Instant::now();
-                self.write(place, run_table.name, &front)?;
-                self.took += start.elapsed();
+            while of(&mut self.rest).rows() >= fewest {
+                let group = ROW_GROUP.min(self.file_rows);
+                let front = of(&mut self.rest).split_front(group);
+                self.write_group(place, run_table.name, &front)?;
             }
         }
         Ok(())
     }
 
-    fn write(&mut self, place: usize, name: &'static str, rows: &Table) -> Result<(), OutputError> {
+    fn write_group(
+        &mut self,
+        place: usize,
+        name: &'static str,
+        rows: &Table,
+    ) -> Result<(), OutputError> {
         let frame = self.out.frame(name, rows)?;
         let files = match self.files[place].take() {
             Some(files) if files.rows + frame.height() > self.file_rows => {

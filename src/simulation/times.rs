@@ -12,8 +12,9 @@ pub struct Times {
     pub loop_s: f64,
     /// Cross-check.
     pub cross_check_s: f64,
-    /// Keeping parts, which is done beside the loop, making rows of them, and statistics.
+    /// Keeping parts, which is done beside the loop, making of them the tables that grow with the episodes, and
+    /// statistics.
     pub statistics_s: f64,
-    /// Writing files, but for parts.
+    /// Writing the other files.
     pub writing_s: f64,
 }
