@@ -377,8 +377,8 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "team",
-        "NC>, PUBLISHED>",
-        "NC>, 2u * SHARED>",
+        "slot_get(command_slot(), own.channel, agent)",
+        "slot_get(command_slot(), own.channel, own.agent)",
         "team_commands",
     ),
     control("team", "return 2u * SHARED;", "return SHARED;", "slot"),
