@@ -37,7 +37,7 @@ fn check_shows_what_would_be_drawn_and_simulates_and_writes_nothing() {
     let refused = place.program(&["check", "c.toml", "--episodes", "4000000000"]);
     assert_eq!(refused.code, 2);
     assert!(
-        refused.stderr.contains("episodes (line 4) = 4000000000: "),
+        refused.stderr.contains("--episodes = 4000000000: "),
         "{}",
         refused.stderr
     );
