@@ -82,7 +82,8 @@ impl Extent {
             campaign.episodes,
             &format!("their statistics take about {needed} of memory, and {there} are there"),
             &match fitting {
-                0 => "take a machine or a limit with more of it".to_string(),
+                0 => "use a machine with more, or raise the limit of this process (ulimit -v)"
+                    .to_string(),
                 _ => format!("give {fitting} or fewer, or another machine"),
             },
         ))

@@ -46,8 +46,8 @@ impl FileRecord {
     }
 }
 
-/// The files that are in a directory under a name: one, those of a folder, or none.
-fn files_of(dir: &Path, name: &str) -> std::io::Result<Vec<String>> {
+/// The files that are in a directory under a name, in their order: one, those of a folder, or none.
+pub(super) fn files_of(dir: &Path, name: &str) -> std::io::Result<Vec<String>> {
     let path = dir.join(name);
     if !path.is_dir() {
         return Ok(path

@@ -1,14 +1,15 @@
 //! A table of a run, read back.
 
 use super::error::OutputError;
+use super::integrity::files_of;
 use polars::prelude::{
     Column as PolarsColumn, DataFrame, DataType, ParquetReader, PolarsResult, SerReader,
 };
 use std::collections::HashMap;
-use std::fs::{self, File};
+use std::fs::File;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A table by columns. A column that the table does not have is empty cells: tables of other versions are read as far
 /// as they go.
@@ -51,7 +52,16 @@ impl TableReader {
         rows: Range<usize>,
         wanted: impl Fn(&str) -> bool,
     ) -> Result<Option<Self>, OutputError> {
-        let files = files_of(&dir.join(format!("{name}.parquet")));
+        let no_run = |reason: String| OutputError::NoRun {
+            path: dir.to_path_buf(),
+            reason: format!("{name}.parquet: {reason}"),
+        };
+        let names = files_of(dir, &format!("{name}.parquet"));
+        let opened = names.and_then(|names| {
+            let files = names.iter().map(|name| File::open(dir.join(name)));
+            files.collect::<std::io::Result<Vec<File>>>()
+        });
+        let files = opened.map_err(|error| no_run(error.to_string()))?;
         if files.is_empty() {
             return Ok(None);
         }
@@ -62,10 +72,7 @@ impl TableReader {
             Ok(Err(error)) => error.to_string(),
             Err(_) => "it is no whole Parquet file".to_string(),
         };
-        Err(OutputError::NoRun {
-            path: dir.to_path_buf(),
-            reason: format!("{name}.parquet: {reason}"),
-        })
+        Err(no_run(reason))
     }
 
     fn parse(
@@ -184,21 +191,6 @@ impl TableReader {
                 .all(|(name, value)| self.text(row, name) == *value)
         })
     }
-}
-
-/// The files of a table, in their order.
-fn files_of(path: &Path) -> Vec<File> {
-    let paths = match fs::read_dir(path) {
-        Ok(entries) => {
-            let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-            paths.sort();
-            paths
-        }
-        Err(_) => vec![path.to_path_buf()],
-    };
-    let opened = paths.into_iter().map(File::open);
-    // What a run counts has been verified before.
-    opened.filter_map(Result::ok).collect()
 }
 
 fn column(column: &PolarsColumn) -> PolarsResult<Column> {

@@ -1,6 +1,6 @@
 //! Loops of few iterations, written out. naga puts a counter of its own into every loop, so that none runs for ever.
-//! That keeps compilers like NVIDIA's from unrolling them, which would halve what a UAV's step takes. Written out,
-//! every number is the same, since the same operations are done in the same order.
+//! That keeps compilers like NVIDIA's from unrolling them. Written out, every number is the same, since the same
+//! operations are done in the same order.
 
 use std::collections::HashMap;
 
