@@ -1,5 +1,5 @@
 // Twin of src/model/plant/leg/dynamics.rs and src/model/plant/leg/link.rs: forward dynamics of a leg, (4). One
-// invocation answers for a leg.
+// invocation answers for a leg, or for the part of it that it is asked for.
 //
 // TWIST_1 to TWIST_5 are constants, PARALLEL, RIGHT or ANY: what is asked of a twist is decided when the shader is
 // compiled.
@@ -64,57 +64,85 @@ struct Composite {
     second: Second,
 }
 
-// q'', rad/s^2, of a leg under `torque`, N m, at the angles `q`, rad, and their rates `rate`, rad/s.
-fn forward_dynamics(
-    model: LegModel,
-    q: array<f32, 6>,
-    rate: array<f32, 6>,
-    torque: array<f32, 6>,
-) -> array<f32, 6> {
-    let j0 = model.joints[0];
+// What gravity, rates and their products take of the torques, but for the first link's own weight (`leg_weight`).
+fn leg_bias(model: LegModel, turns: array<Turn, 6>, rate: array<f32, 6>) -> array<f32, 6> {
     let j1 = model.joints[1];
     let j2 = model.joints[2];
     let j3 = model.joints[3];
     let j4 = model.joints[4];
     let j5 = model.joints[5];
+    let t0 = turns[0];
+    let t1 = turns[1];
+    let t2 = turns[2];
+    let t3 = turns[3];
+    let t4 = turns[4];
+    let t5 = turns[5];
 
     // Outwards: motion without joint accelerations, and the wrench that it takes.
-    let t0 = turn(j0, q[0]);
     let motion_0 = first_motion(model, t0, rate[0]);
-    let own_0 = first_moment(j0, motion_0);
-    let t1 = turn(j1, q[1]);
     let motion_1 = second_motion(TWIST_1, j1, t1, rate[0], rate[1], motion_0);
     let own_1 = wrench(j1, motion_1);
-    let t2 = turn(j2, q[2]);
     let motion_2 = next_motion(TWIST_2, j2, t2, rate[2], motion_1);
     let own_2 = wrench(j2, motion_2);
-    let t3 = turn(j3, q[3]);
     let motion_3 = next_motion(TWIST_3, j3, t3, rate[3], motion_2);
     let own_3 = wrench(j3, motion_3);
-    let t4 = turn(j4, q[4]);
     let motion_4 = next_motion(TWIST_4, j4, t4, rate[4], motion_3);
     let own_4 = wrench(j4, motion_4);
-    let t5 = turn(j5, q[5]);
     let motion_5 = next_motion(TWIST_5, j5, t5, rate[5], motion_4);
 
-    // Inwards: what damping and bias leave of the torques.
+    // Inwards: what is beyond each joint.
     let load_5 = wrench(j5, motion_5);
     let load_4 = joined(TWIST_5, j5, t5, load_5, own_4);
     let load_3 = joined(TWIST_4, j4, t4, load_4, own_3);
     let load_2 = joined(TWIST_3, j3, t3, load_3, own_2);
     let load_1 = joined(TWIST_2, j2, t2, load_2, own_1);
     let load_0 = carried(TWIST_1, j1, t1, load_1);
-    let b5 = damped(j5, rate[5], torque[5]) - load_5.moment.z;
-    var b4 = damped(j4, rate[4], torque[4]) - load_4.moment.z;
-    var b3210 = vec4(
-        damped(j0, rate[0], torque[0]) - load_0.moment.z - own_0,
-        damped(j1, rate[1], torque[1]) - load_1.moment.z,
-        damped(j2, rate[2], torque[2]) - load_2.moment.z,
-        damped(j3, rate[3], torque[3]) - load_3.moment.z,
+    return array(
+        load_0.moment.z,
+        load_1.moment.z,
+        load_2.moment.z,
+        load_3.moment.z,
+        load_4.moment.z,
+        load_5.moment.z,
     );
+}
 
-    // Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints
-    // before. With M = L' D L, each row is rid of the rows beyond, scaled to a row of L, and taken off the right side.
+// What the first link's own weight takes of the first torque.
+fn leg_weight(model: LegModel, first: Turn) -> f32 {
+    return first_moment(model.joints[0], first_motion(model, first, 0.0));
+}
+
+// M = L' D L: the rows of L below its diagonal, the reciprocals of D but for its first entry, and that.
+struct Factors {
+    l54: f32,
+    l5: vec4<f32>,
+    l4: vec4<f32>,
+    l3: vec3<f32>,
+    l2: vec2<f32>,
+    l1: f32,
+    d5: f32,
+    d4: f32,
+    d3: f32,
+    d2: f32,
+    d1: f32,
+    m0: f32,
+}
+
+// Composite bodies: a row of M is the momentum of those beyond at unit rate of a joint, carried to the joints before.
+// Each row is rid of the rows beyond, and scaled to a row of L.
+fn leg_factors(model: LegModel, turns: array<Turn, 6>) -> Factors {
+    let j0 = model.joints[0];
+    let j1 = model.joints[1];
+    let j2 = model.joints[2];
+    let j3 = model.joints[3];
+    let j4 = model.joints[4];
+    let j5 = model.joints[5];
+    let t1 = turns[1];
+    let t2 = turns[2];
+    let t3 = turns[3];
+    let t4 = turns[4];
+    let t5 = turns[5];
+
     let body_5 = tip(j5);
     let p54 = carried(TWIST_5, j5, t5, momentum(body_5));
     let p53 = carried(TWIST_4, j4, t4, p54);
@@ -126,8 +154,6 @@ fn forward_dynamics(
     let d5 = model.pelvis.z;
     let l54 = m54 * d5;
     let l5 = m5 * d5;
-    b4 = fma(l54, -b5, b4);
-    b3210 = fma(l5, vec4(-b5), b3210);
 
     let body_4 = composite(TWIST_5, j5, t5, body_5, j4);
     let p44 = momentum(body_4);
@@ -141,7 +167,6 @@ fn forward_dynamics(
     m4 = fma(l5, vec4(-m54), m4);
     let d4 = 1.0 / m44;
     let l4 = m4 * d4;
-    b3210 = fma(l4, vec4(-b4), b3210);
 
     let body_3 = composite(TWIST_4, j4, t4, body_4, j3);
     let p33 = momentum(body_3);
@@ -153,8 +178,6 @@ fn forward_dynamics(
     m3 = fma(l4, vec4(-m4.w), m3);
     let d3 = 1.0 / m3.w;
     let l3 = m3.xyz * d3;
-    let b3 = b3210.w;
-    let b210 = fma(l3, vec3(-b3), b3210.xyz);
 
     let body_2 = composite(TWIST_3, j3, t3, body_3, j2);
     let p22 = momentum(body_2);
@@ -166,8 +189,6 @@ fn forward_dynamics(
     m2 = fma(l3, vec3(-m3.z), m2);
     let d2 = 1.0 / m2.z;
     let l2 = m2.xy * d2;
-    let b2 = b210.z;
-    let b10 = fma(l2, vec2(-b2), b210.xy);
 
     let body_1 = composite(TWIST_2, j2, t2, body_2, j1);
     let p11 = momentum(body_1);
@@ -179,8 +200,6 @@ fn forward_dynamics(
     m1 = fma(l2, vec2(-m2.y), m1);
     let d1 = 1.0 / m1.y;
     let l1 = m1.x * d1;
-    let b1 = b10.y;
-    let b0 = fma(l1, -b1, b10.x);
 
     let body_0 = composite(TWIST_1, j1, t1, body_1, j0);
     let p00 = momentum(body_0);
@@ -191,24 +210,47 @@ fn forward_dynamics(
     m0 = fma(l2.x, -m2.x, m0);
     m0 = fma(l1, -m1.x, m0);
 
+    return Factors(l54, l5, l4, l3, l2, l1, d5, d4, d3, d2, d1, m0);
+}
+
+// The accelerations under what the bias leaves of the torques.
+fn leg_solve(factors: Factors, left: array<f32, 6>) -> array<f32, 6> {
+    let b5 = left[5];
+    let b4 = fma(factors.l54, -b5, left[4]);
+    var b3210 = vec4(left[0], left[1], left[2], left[3]);
+    b3210 = fma(factors.l5, vec4(-b5), b3210);
+    b3210 = fma(factors.l4, vec4(-b4), b3210);
+    let b3 = b3210.w;
+    let b210 = fma(factors.l3, vec3(-b3), b3210.xyz);
+    let b2 = b210.z;
+    let b10 = fma(factors.l2, vec2(-b2), b210.xy);
+    let b1 = b10.y;
+    let b0 = fma(factors.l1, -b1, b10.x);
     // From the pelvis outwards.
-    let a0 = b0 / m0;
-    let a1 = fma(l1, -a0, b1 * d1);
-    let a2 = fma(l2.y, -a1, fma(l2.x, -a0, b2 * d2));
-    let a3 = fma(l3.z, -a2, fma(l3.y, -a1, fma(l3.x, -a0, b3 * d3)));
-    let a4 = fma(l4.w, -a3, fma(l4.z, -a2, fma(l4.y, -a1, fma(l4.x, -a0, b4 * d4))));
-    let a5 = fma(l54, -a4, fma(l5.w, -a3, fma(l5.z, -a2, fma(l5.y, -a1, fma(l5.x, -a0, b5 * d5)))));
+    let a0 = b0 / factors.m0;
+    let a1 = fma(factors.l1, -a0, b1 * factors.d1);
+    let a2 = fma(factors.l2.y, -a1, fma(factors.l2.x, -a0, b2 * factors.d2));
+    let a3 = fma(factors.l3.z, -a2, fma(factors.l3.y, -a1, fma(factors.l3.x, -a0, b3 * factors.d3)));
+    var a4 = fma(factors.l4.x, -a0, b4 * factors.d4);
+    a4 = fma(factors.l4.y, -a1, a4);
+    a4 = fma(factors.l4.z, -a2, a4);
+    a4 = fma(factors.l4.w, -a3, a4);
+    var a5 = fma(factors.l5.x, -a0, b5 * factors.d5);
+    a5 = fma(factors.l5.y, -a1, a5);
+    a5 = fma(factors.l5.z, -a2, a5);
+    a5 = fma(factors.l5.w, -a3, a5);
+    a5 = fma(factors.l54, -a4, a5);
     return array(a0, a1, a2, a3, a4, a5);
 }
 
-fn turn(joint: Joint, q: f32) -> Turn {
-    let both = sin_cos(q + joint.angle.x);
+fn turn(offset: f32, q: f32) -> Turn {
+    let both = sin_cos(q + offset);
     return Turn(both.x, both.y);
 }
 
 // What the joint's damping leaves of its torque.
-fn damped(joint: Joint, rate: f32, torque: f32) -> f32 {
-    return fma(rate, -joint.lever.w, torque);
+fn damped(damping: f32, rate: f32, torque: f32) -> f32 {
+    return fma(rate, -damping, torque);
 }
 
 // The first link turns about a fixed axis: only diagonal entries of its spin.

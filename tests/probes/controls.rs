@@ -173,14 +173,14 @@ const CONTROLS: &[Control] = &[
     ),
     control(
         "plant_biped",
-        "leg_seen(stage, VELOCITY),",
-        "leg_seen(stage, POSITION),",
+        "leg_turns(stage), leg_seen(stage, VELOCITY)",
+        "leg_turns(stage), leg_seen(stage, POSITION)",
         "plant",
     ),
     control(
         "leg",
-        "fma(rate, -joint.lever.w, torque)",
-        "fma(rate, -joint.lever.z, torque)",
+        "fma(rate, -damping, torque)",
+        "fma(rate, damping, torque)",
         "forward_dynamics",
     ),
     control(
@@ -289,6 +289,18 @@ const CONTROLS: &[Control] = &[
         "leg",
         "let l1 = m1.x * d1;",
         "let l1 = m1.x * d2;",
+        "forward_dynamics",
+    ),
+    control(
+        "leg",
+        "b10 = fma(factors.l2, vec2(-b2), b210.xy)",
+        "b10 = fma(factors.l2, vec2(b2), b210.xy)",
+        "forward_dynamics",
+    ),
+    control(
+        "leg",
+        "first_moment(model.joints[0], first_motion(",
+        "first_moment(model.joints[1], first_motion(",
         "forward_dynamics",
     ),
     control(

@@ -12,6 +12,22 @@ use crate::model::plant::biped::{LegPlant, matrix_row, plus_product};
 use crate::model::plant::leg::{LEG_JOINTS, LegJoint, LegModel, LegUniforms, forward_dynamics};
 use std::path::Path;
 
+/// `found`: the accelerations of a leg of a `model` at `q`, `rate` and `torque`, its parts put together as the joints do.
+const DYNAMICS: &str = "
+    var given_q = q;
+    var given_rate = rate;
+    var given_torque = torque;
+    var turns: array<Turn, 6>;
+    for (var k = 0u; k < 6u; k++) { turns[k] = turn(model.joints[k].angle.x, given_q[k]); }
+    var bias = leg_bias(model, turns, rate);
+    var left: array<f32, 6>;
+    for (var k = 0u; k < 6u; k++) {
+        left[k] = damped(model.joints[k].lever.w, given_rate[k], given_torque[k]) - bias[k];
+    }
+    left[0] = left[0] - leg_weight(model, turns[0]);
+    var found = leg_solve(leg_factors(model, turns), left);
+";
+
 const PROBE: &str = "
 @group(0) @binding(0) var<uniform> leg: LegModel;
 @compute @workgroup_size(64)
@@ -23,7 +39,8 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let q = array(given[0], given[1], given[2], given[3], given[4], given[5]);
     let rate = array(given[6], given[7], given[8], given[9], given[10], given[11]);
     let torque = array(given[12], given[13], given[14], given[15], given[16], given[17]);
-    let found = forward_dynamics(leg, q, rate, torque);
+    var model = leg;
+    DYNAMICS
     output[6u * i] = bitcast<u32>(found[0]);
     output[6u * i + 1u] = bitcast<u32>(found[1]);
     output[6u * i + 2u] = bitcast<u32>(found[2]);
@@ -41,7 +58,7 @@ fn text(constants: &[(String, u32)]) -> String {
         plant_constants: constants.to_vec(),
         ..shape
     };
-    format!("{}{PROBE}", shape.text())
+    format!("{}{}", shape.text(), PROBE.replace("DYNAMICS", DYNAMICS))
 }
 
 /// A joint's row of a matrix, and its product with what the joints have published.
@@ -84,11 +101,13 @@ pub(super) fn dynamics<const CUT: bool, const NS: usize>(
 ) -> Compared {
     let body = "
         load();
+        var model = uniforms.plant.model;
         let q = array(number(0u), number(1u), number(2u), number(3u), number(4u), number(5u));
         let rate = array(number(6u), number(7u), number(8u), number(9u), number(10u), number(11u));
         let torque = array(number(12u), number(13u), number(14u), number(15u), number(16u), number(17u));
-        var found = forward_dynamics(uniforms.plant.model, q, rate, torque);
+        DYNAMICS
         for (var k = 0u; k < 6u; k++) { answer_number(k, found[k]); }";
+    let body = &body.replace("DYNAMICS", DYNAMICS);
     let sizes = std::array::from_fn(|k: usize| [1.5, 2.0, 10.0][k / LEG_JOINTS]);
     world.check(lab, body, 6, sized::<18>(sizes), |scene| {
         scene.each(|scene, a, c| {

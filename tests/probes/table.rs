@@ -178,7 +178,9 @@ pub(super) const LOOPS: &[Probe] = &[
             "axis_respond",
             "attitude_respond",
             "thrust_respond",
-            "leg_accelerate"
+            "leg_left",
+            "leg_turns",
+            "leg_publish"
         ],
         over_shapes!(loops::plant)
     ),
@@ -190,7 +192,10 @@ pub(super) const LOOPS: &[Probe] = &[
     probe!(
         "forward_dynamics",
         [
-            "forward_dynamics",
+            "leg_bias",
+            "leg_weight",
+            "leg_factors",
+            "leg_solve",
             "turn",
             "damped",
             "first_motion",

@@ -94,7 +94,12 @@ const TWINS: &[(&str, &str, Pairs)] = &[
     (
         "leg",
         include_str!("../../src/model/plant/leg/dynamics.rs"),
-        &[("accelerations", "forward_dynamics")],
+        &[
+            ("bias", "leg_bias"),
+            ("weight", "leg_weight"),
+            ("factors", "leg_factors"),
+            ("solve", "leg_solve"),
+        ],
     ),
     (
         "link",
@@ -321,8 +326,8 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         "constants of the shader",
     ),
     (
-        &["forward_dynamics", "leg_rows"],
-        "the host's choice of the shader's constants",
+        &["forward_dynamics", "accelerations", "leg_rows"],
+        "the host's choice of the shader's constants, and its order of the parts that two joints share",
     ),
     (
         &["scaled", "less", "remainder", "plus"],
@@ -392,7 +397,10 @@ const IN_WGSL_ALONE: &[(&[&str], &str)] = &[
         ],
         "indexing of buffers",
     ),
-    (&["leg_accelerate"], "half of respond"),
+    (
+        &["leg_left", "leg_turns", "leg_publish"],
+        "what the joints of a leg pass to each other",
+    ),
     (
         &[
             "identify",

@@ -132,7 +132,10 @@ impl Shape {
             ("COMMAND_GAIN", 3),
             ("TORQUE", 3),
             ("COMMAND_LOW", 4),
+            ("BIAS", 4),
             ("COMMAND_HIGH", 5),
+            ("SINE", 5),
+            ("COSINE", 6),
             // Behind all that thrust shows without it.
             ("COMMAND_DEAD_ZONE", PlantKind::Thrust.spec().shared),
         ] {

@@ -80,7 +80,7 @@ impl PlantKind {
                 name: "LEG",
                 channels: 6,
                 own_states: 0,
-                shared: 4,
+                shared: 7,
                 kinds: 1,
                 limited: true,
             },

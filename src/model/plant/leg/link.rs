@@ -45,15 +45,15 @@ pub(super) struct Composite<L> {
 }
 
 #[inline(always)]
-pub(super) fn turn<L: Lane>(joint: &Joint<L::Real>, q: L) -> Turn<L> {
-    let (sine, cosine) = (q + L::splat(joint.offset)).sin_cos();
+pub(super) fn turn<L: Lane>(offset: L::Real, q: L) -> Turn<L> {
+    let (sine, cosine) = (q + L::splat(offset)).sin_cos();
     Turn { sine, cosine }
 }
 
 /// What the joint's damping leaves of its torque.
 #[inline(always)]
-pub(super) fn damped<L: Lane>(joint: &Joint<L::Real>, rate: L, torque: L) -> L {
-    rate.mul_add(-L::splat(joint.damping), torque)
+pub(super) fn damped<L: Lane>(damping: L::Real, rate: L, torque: L) -> L {
+    rate.mul_add(-L::splat(damping), torque)
 }
 
 /// The first link turns about a fixed axis: only diagonal entries of its spin.
