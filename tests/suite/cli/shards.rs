@@ -1,6 +1,11 @@
 //! A run by several processes: shards, what is known of them while they fly, and the one run that they make.
 
 use super::parts::{place, tables, until};
+use crate::common::repository;
+use serde_json::{Value, json};
+use std::ffi::OsStr;
+use std::io::Write;
+use std::process::{Command, Stdio};
 use urts_mc::run::shard::{AskedShard, Shard, Shards, shard_of};
 
 /// The command of a run of five parts.
@@ -332,4 +337,62 @@ fn kubernetes_tasks_that_are_simulated_make_the_run_of_one_process() {
     assert_eq!((ended.code, ended.stderr.as_str()), (0, ""));
     assert_eq!(place.program(&run("whole", &[])).code, 0);
     assert!(tables(&place, "out") == tables(&place, "whole"));
+}
+
+/// Whether the published schema of Kubernetes takes manifests, and what it says.
+fn schema_takes(python: &OsStr, manifests: &Value) -> (bool, String) {
+    let mut check = Command::new(python)
+        .arg(repository("tests/kubernetes.py"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let text = manifests.to_string();
+    check
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(text.as_bytes())
+        .unwrap();
+    let ended = check.wait_with_output().unwrap();
+    let said = [ended.stdout, ended.stderr].concat();
+    (
+        ended.status.success(),
+        String::from_utf8_lossy(&said).into_owned(),
+    )
+}
+
+#[test]
+fn val_kubernetes_manifests_keep_the_published_schema() {
+    let Some(python) = std::env::var_os("URTS_PYTHON") else {
+        println!("SKIPPED: URTS_PYTHON names no Python with schemas");
+        return;
+    };
+    let place = place();
+    let submit = |backend| {
+        let words = [
+            "submit",
+            "c.toml",
+            "--kubernetes",
+            "8",
+            "--image",
+            "registry/urts-mc:0.1",
+        ];
+        place.json(&[&words[..], &["--time", "1h", "--backend", backend]].concat())
+    };
+    for backend in ["cpu", "gpu"] {
+        let (taken, said) = schema_takes(&python, &submit(backend));
+        assert!(taken && said.matches("valid in").count() == 4, "{said}");
+    }
+    // A key that is misspelled, and a number where there has to be a text.
+    for (key, value) in [
+        ("backofLimitPerIndex", json!(3)),
+        ("completionMode", json!(1)),
+    ] {
+        let mut wrong = submit("cpu");
+        wrong["items"][0]["spec"][key] = value;
+        let (taken, said) = schema_takes(&python, &wrong);
+        assert!(!taken && said.contains(key), "{said}");
+    }
 }
