@@ -1,16 +1,5 @@
-// Twin of src/random/philox.rs: Philox4x32-10, addressed by (seed, episode, stream, entry, member, index).
-
-// Both halves of a 64-bit product, from 16-bit limbs: (high, low).
-fn wide_product(a: u32, b: u32) -> vec2<u32> {
-    let a_low = a & 0xffffu;
-    let a_high = a >> 16u;
-    let b_low = b & 0xffffu;
-    let b_high = b >> 16u;
-    let low = a_low * b_low;
-    let first = a_high * b_low + (low >> 16u);
-    let second = a_low * b_high + (first & 0xffffu);
-    return vec2(a_high * b_high + (first >> 16u) + (second >> 16u), a * b);
-}
+// Twin of src/random/philox.rs: Philox4x32-10, addressed by (seed, episode, stream, entry, member, index). The product
+// on which it builds is in wide_product.wgsl or, where the device has 64-bit integers, wide_product_int64.wgsl.
 
 // Four random words of a 128-bit counter under a 64-bit key.
 fn philox4x32(counter: vec4<u32>, key: vec2<u32>) -> vec4<u32> {

@@ -4,7 +4,7 @@ use super::EpisodeResult;
 use crate::campaign::AgentGroup;
 use crate::draw::{Episode, draw};
 use crate::model::controller::kinds::Controller;
-use crate::model::episode::{AgentOutcome, Model, Snapshot};
+use crate::model::episode::{Model, Trace};
 use crate::model::lanes::{Lane, MAX_WIDTH, Real};
 use crate::synthesis::LoopGains;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ pub enum Precision {
     F32,
 }
 
-/// How single-precision episodes are laid side by side.
+/// How episodes are laid side by side: so many of single precision, half as many of double.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Simd {
@@ -62,13 +62,19 @@ impl Simd {
             .find(|simd| simd.is_available())
             .unwrap_or(Self::Scalar)
     }
+
+    /// The layout that is asked for, if this processor can run it; else the widest.
+    fn asked_or_widest(asked: Option<Self>) -> Self {
+        let available = asked.filter(|simd| simd.is_available());
+        available.unwrap_or_else(Self::widest)
+    }
 }
 
 /// A campaign's controllers, ready in one precision and layout.
 pub struct Cpu(Loop);
 
 enum Loop {
-    F64(Simulator<f64>),
+    F64(Simulator<f64>, Simd),
     F32(Simulator<f32>, Simd),
 }
 
@@ -77,6 +83,44 @@ struct Simulator<R> {
     group: AgentGroup,
     model: Model<R>,
     controllers: Vec<Controller<R>>,
+}
+
+/// `$body` with `$simulator`, and `$L` as the lanes of its layout.
+macro_rules! with_lanes {
+    ($loop:expr, |$simulator:ident, $L:ident| $body:expr) => {{
+        #[cfg(target_arch = "x86_64")]
+        use crate::model::lanes::{double, simd};
+        match $loop {
+            #[cfg(target_arch = "x86_64")]
+            Loop::F64($simulator, Simd::Avx512) => {
+                type $L = double::F64x8;
+                $body
+            }
+            #[cfg(target_arch = "x86_64")]
+            Loop::F64($simulator, Simd::Avx2) => {
+                type $L = double::F64x4;
+                $body
+            }
+            Loop::F64($simulator, _) => {
+                type $L = f64;
+                $body
+            }
+            #[cfg(target_arch = "x86_64")]
+            Loop::F32($simulator, Simd::Avx512) => {
+                type $L = simd::F32x16;
+                $body
+            }
+            #[cfg(target_arch = "x86_64")]
+            Loop::F32($simulator, Simd::Avx2) => {
+                type $L = simd::F32x8;
+                $body
+            }
+            Loop::F32($simulator, _) => {
+                type $L = f32;
+                $body
+            }
+        }
+    }};
 }
 
 impl Cpu {
@@ -90,24 +134,25 @@ impl Cpu {
         precision: Precision,
         simd: Option<Simd>,
     ) -> Self {
-        Self(match Self::layout(precision, simd) {
-            None => Loop::F64(Simulator::new(group, gains)),
-            Some(simd) => Loop::F32(Simulator::new(group, gains), simd),
+        let layout = Simd::asked_or_widest(simd);
+        Self(match precision {
+            Precision::F64 => Loop::F64(Simulator::new(group, gains), layout),
+            Precision::F32 => Loop::F32(Simulator::new(group, gains), layout),
         })
     }
 
-    /// The layout that episodes have where one is asked for; none in double precision.
+    /// The layout that episodes have where one is asked for; none in double precision, in which all of them give the
+    /// same bits.
     #[must_use]
     pub fn layout(precision: Precision, asked: Option<Simd>) -> Option<Simd> {
-        let available = asked.filter(|simd| simd.is_available());
-        (precision == Precision::F32).then(|| available.unwrap_or_else(Simd::widest))
+        (precision == Precision::F32).then(|| Simd::asked_or_widest(asked))
     }
 
     /// The layout in use; `None` in double precision.
     #[must_use]
     pub fn simd(&self) -> Option<Simd> {
         match self.0 {
-            Loop::F64(_) => None,
+            Loop::F64(..) => None,
             Loop::F32(_, simd) => Some(simd),
         }
     }
@@ -120,48 +165,36 @@ impl Cpu {
         episodes: Range<u32>,
         done: &(dyn Fn(u32) + Sync),
     ) -> Vec<EpisodeResult> {
-        match &self.0 {
-            Loop::F64(simulator) => simulator.simulate::<f64>(episodes, done),
-            Loop::F32(simulator, simd) => match simd {
-                Simd::Scalar => simulator.simulate::<f32>(episodes, done),
-                #[cfg(target_arch = "x86_64")]
-                Simd::Avx2 => {
-                    simulator.simulate::<crate::model::lanes::simd::F32x8>(episodes, done)
-                }
-                #[cfg(target_arch = "x86_64")]
-                Simd::Avx512 => {
-                    simulator.simulate::<crate::model::lanes::simd::F32x16>(episodes, done)
-                }
-                #[cfg(not(target_arch = "x86_64"))]
-                _ => simulator.simulate::<f32>(episodes, done),
-            },
-        }
+        with_lanes!(&self.0, |simulator, L| simulator
+            .simulate::<L>(episodes, done))
     }
 
     /// Simulates one episode under one controller and shows it every `every` steps.
     #[must_use]
-    pub fn trace(
-        &self,
-        episode: u32,
-        controller: usize,
-        every: u32,
-    ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
-        match &self.0 {
-            Loop::F64(simulator) => simulator.trace::<f64>(episode, controller, every),
-            Loop::F32(simulator, simd) => {
-                match simd {
-                    Simd::Scalar => simulator.trace::<f32>(episode, controller, every),
-                    #[cfg(target_arch = "x86_64")]
-                    Simd::Avx2 => simulator
-                        .trace::<crate::model::lanes::simd::F32x8>(episode, controller, every),
-                    #[cfg(target_arch = "x86_64")]
-                    Simd::Avx512 => simulator
-                        .trace::<crate::model::lanes::simd::F32x16>(episode, controller, every),
-                    #[cfg(not(target_arch = "x86_64"))]
-                    _ => simulator.trace::<f32>(episode, controller, every),
-                }
-            }
-        }
+    pub fn trace(&self, episode: u32, controller: usize, every: u32) -> Trace {
+        let mut traces = match &self.0 {
+            // The same bits as in lanes, of which all but one would be idle.
+            Loop::F64(simulator, _) => simulator.trace::<f64>(&[episode], controller, every),
+            Loop::F32(..) => self.traces(&[episode], controller, every),
+        };
+        traces.pop().unwrap_or_default()
+    }
+
+    /// The same of some episodes, which are simulated side by side.
+    #[must_use]
+    pub fn traces(&self, episodes: &[u32], controller: usize, every: u32) -> Vec<Trace> {
+        with_lanes!(&self.0, |simulator, L| {
+            let blocks = episodes.chunks(L::WIDTH);
+            blocks
+                .flat_map(|block| simulator.trace::<L>(block, controller, every))
+                .collect()
+        })
+    }
+
+    /// How many episodes are simulated side by side.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        with_lanes!(&self.0, |_simulator, L| L::WIDTH)
     }
 }
 
@@ -210,15 +243,14 @@ impl<R: Real> Simulator<R> {
 
     fn trace<L: Lane<Real = R>>(
         &self,
-        episode: u32,
+        episodes: &[u32],
         controller: usize,
         every: u32,
-    ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
-        self.model.trace::<L>(
-            &self.controllers[controller],
-            &draw(&self.group, episode),
-            every,
-        )
+    ) -> Vec<Trace> {
+        let drawn = episodes.iter().map(|&episode| draw(&self.group, episode));
+        let drawn: Vec<Episode> = drawn.collect();
+        self.model
+            .trace::<L>(&self.controllers[controller], &drawn, every)
     }
 }
 

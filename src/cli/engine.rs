@@ -63,11 +63,6 @@ impl EngineArguments {
                 "--simd: lays out the episodes of the CPU; use --backend cpu".into(),
             ));
         }
-        if precision == Precision::F64 && simd.is_some() {
-            return Err(Failure::usage(
-                "--simd: lays out episodes in single precision; leave it out, or use --precision f32".into(),
-            ));
-        }
         Ok(RunOptions {
             backend,
             precision,

@@ -46,8 +46,8 @@ pub(crate) struct EngineArguments {
         verbatim_doc_comment
     )]
     pub(crate) precision: PrecisionChoice,
-    /// Layout of the CPU's episodes in f32; avx2 and avx512 give the same
-    /// result
+    /// Layout of the CPU's episodes; avx2 and avx512 give the same result,
+    /// and in f64 all do
     #[arg(
         long,
         value_enum,

@@ -7,6 +7,7 @@
 
 use super::controller::Law;
 use super::exogenous::delay_line::Moment;
+use super::exogenous::evaluation::HasSignals;
 use super::exogenous::vortex::Vortex;
 use super::exogenous::{ExogenousInputs, kernels};
 use super::inputs::ChannelInputs;
@@ -78,6 +79,15 @@ pub(crate) struct Agent<L: Lane, const NC: usize, const NS: usize, const NX: usi
     pub(crate) metrics: [Metrics<L>; NC],
     /// The first step that failed; infinite if none did.
     pub(crate) failed: L,
+}
+
+impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> HasSignals<L, NC>
+    for Agent<L, NC, NS, NX>
+{
+    #[inline(always)]
+    fn signals(&mut self) -> &mut ExogenousInputs<L, NC> {
+        &mut self.signals
+    }
 }
 
 impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> Agent<L, NC, NS, NX> {

@@ -17,7 +17,7 @@ use super::plant::Plant;
 use super::plant::kinds::{AnyPlant, with_plant};
 use super::sample::{ChannelSample, ObserverState};
 use super::subsystem::{Subsystem, parts};
-use super::team::{Advance, Ending, Show, TeamState};
+use super::team::{Advance, Ending, Show, Shown, TeamState};
 use crate::campaign::{AgentGroup, IntegralKind, ObserverStart};
 use crate::draw::Episode;
 
@@ -48,6 +48,9 @@ pub struct Snapshot {
     /// What the loops hold, `[agent][channel]`; empty where a GPU simulated, which does not send it back.
     pub internals: Vec<Vec<ObserverState>>,
 }
+
+/// How the agents of an episode fared, and what it showed from the start to the end.
+pub type Trace = (Vec<AgentOutcome>, Vec<Snapshot>);
 
 impl AgentOutcome {
     /// The outcome before anything is known of it.
@@ -87,20 +90,16 @@ impl<R: Real> Model<R> {
         self.run_loop::<L>(controller, episodes, None).0
     }
 
-    /// Simulates one episode and shows it every `every` steps, from the start to the end.
+    /// Simulates at most `L::WIDTH` episodes and shows them every `every` steps, from the start to the end.
     #[must_use]
     pub fn trace<L: Lane<Real = R>>(
         &self,
         controller: &Controller<R>,
-        episode: &Episode,
+        episodes: &[Episode],
         every: u32,
-    ) -> (Vec<AgentOutcome>, Vec<Snapshot>) {
-        let (mut outcomes, snapshots) = self.run_loop::<L>(
-            controller,
-            std::slice::from_ref(episode),
-            Some(every.max(1)),
-        );
-        (outcomes.pop().unwrap_or_default(), snapshots)
+    ) -> Vec<Trace> {
+        let (outcomes, snapshots) = self.run_loop::<L>(controller, episodes, Some(every.max(1)));
+        outcomes.into_iter().zip(snapshots).collect()
     }
 
     fn run_loop<L: Lane<Real = R>>(
@@ -108,7 +107,7 @@ impl<R: Real> Model<R> {
         controller: &Controller<R>,
         episodes: &[Episode],
         every: Option<u32>,
-    ) -> (Vec<Vec<AgentOutcome>>, Vec<Snapshot>) {
+    ) -> (Vec<Vec<AgentOutcome>>, Vec<Vec<Snapshot>>) {
         let blank = AgentOutcome::blank(self.group.channels().len());
         let mut running = EpisodeLoop {
             model: self,
@@ -118,7 +117,7 @@ impl<R: Real> Model<R> {
             },
             every,
             outcomes: vec![vec![blank; self.group.team]; episodes.len()],
-            snapshots: Vec::new(),
+            snapshots: vec![Vec::new(); episodes.len()],
         };
         for part in &self.parts {
             with_family!(R, &controller.family, |laws, NS| {
@@ -136,7 +135,8 @@ struct EpisodeLoop<'a, R> {
     /// Steps between two snapshots, if any are taken.
     every: Option<u32>,
     outcomes: Vec<Vec<AgentOutcome>>,
-    snapshots: Vec<Snapshot>,
+    /// Of each episode.
+    snapshots: Vec<Vec<Snapshot>>,
 }
 
 impl<R: Real> EpisodeLoop<'_, R> {
@@ -199,8 +199,11 @@ impl<R: Real> EpisodeLoop<'_, R> {
                 let shown = L::dispatch(Show {
                     team: &mut team,
                     setting: &setting,
+                    lanes: self.block.episodes.len(),
                 });
-                self.keep(snapshot, step, first, &shown);
+                for (lane, shown) in shown.iter().enumerate() {
+                    self.keep(lane, snapshot, step, first, shown);
+                }
                 snapshot += 1;
             }
             if step == steps {
@@ -253,22 +256,25 @@ impl<R: Real> EpisodeLoop<'_, R> {
         Agent::new(channels, condition)
     }
 
+    /// Keeps what a group of channels of an episode, from `first` on, shows at its snapshot of this number.
     fn keep<const NC: usize>(
         &mut self,
+        lane: usize,
         snapshot: usize,
         step: u32,
         first: usize,
-        shown: &[[(ChannelSample, ObserverState); NC]],
+        shown: &[Shown<f64, NC>],
     ) {
-        if snapshot == self.snapshots.len() {
+        let snapshots = &mut self.snapshots[lane];
+        if snapshot == snapshots.len() {
             let channels = self.model.group.channels().len();
-            self.snapshots.push(Snapshot {
+            snapshots.push(Snapshot {
                 step,
                 agents: vec![vec![ChannelSample::default(); channels]; shown.len()],
                 internals: vec![vec![ObserverState::default(); channels]; shown.len()],
             });
         }
-        let snapshot = &mut self.snapshots[snapshot];
+        let snapshot = &mut snapshots[snapshot];
         let agents = snapshot.agents.iter_mut().zip(&mut snapshot.internals);
         for ((agent, internals), shown) in agents.zip(shown) {
             for (c, &(seen, held)) in (first..).zip(shown) {

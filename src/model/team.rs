@@ -34,6 +34,9 @@ pub(crate) struct Ending {
     pub(crate) finite: bool,
 }
 
+/// What the channels of an agent show and hold at one instant.
+pub(crate) type Shown<T, const NC: usize> = [(ChannelSample<T>, ObserverState<T>); NC];
+
 /// The state of a group between two steps.
 pub(crate) struct TeamState<L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) agents: Vec<Agent<L, NC, NS, NX>>,
@@ -210,9 +213,7 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
 
     #[inline(always)]
     fn evaluate(&mut self, moment: Moment) {
-        for agent in &mut self.agents {
-            kernels::evaluate(&mut agent.signals, self.step, moment);
-        }
+        kernels::evaluate(&mut self.agents, self.step, moment);
     }
 
     /// Ends a step for what follows a law of its own.
@@ -265,12 +266,12 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
         }
     }
 
-    /// What the first lane shows and holds at the current step, `[agent][channel]`.
+    /// What the lanes show and hold at the current step, `[agent][channel]`.
     #[inline(always)]
     pub(crate) fn show<P: Plant<L, NC, NX>, C: Law<L, NS>>(
         &mut self,
         setting: &GroupParameters<'_, P, C, L::Real, NC>,
-    ) -> Vec<[(ChannelSample, ObserverState); NC]> {
+    ) -> Vec<Shown<L, NC>> {
         // Repeating this is harmless: what is held depends on the step alone.
         self.hold(setting.seed);
         let stride = self.agents.len() * NC * P::ROWS;
@@ -283,44 +284,42 @@ impl<L: Lane, const NC: usize, const NS: usize, const NX: usize> TeamState<L, NC
             places: &self.places,
             size: self.agents.len(),
         };
-        let blank = (ChannelSample::default(), ObserverState::default());
-        let mut shown = vec![[blank; NC]; team.size];
-        for (((own, agent), rows), shown) in self
+        let mut shown = Vec::with_capacity(team.size);
+        for ((own, agent), rows) in self
             .agents
             .iter()
             .enumerate()
             .zip(rows.chunks_exact(NC * P::ROWS))
-            .zip(&mut shown)
         {
             let response = agent.respond::<P, C, 0>(setting, rows, &team, own, self.step);
             let off = agent.distortion::<P, 0>(&setting.plant, rows);
             let [position, _] = agent.motion::<P, 0>(&setting.plant, rows);
-            for c in 0..NC {
+            shown.push(std::array::from_fn(|c| {
                 let state = agent.channels[c].at::<0>();
                 let [f1_hat, f2_hat] = C::fault_estimates(state);
                 let f1 = response.error_acceleration[c] - response.applied_feedback[c];
                 let seen = ChannelSample {
-                    r: first_lane(position[c] - state[1]),
-                    x: first_lane(position[c]),
-                    e: first_lane(state[1]),
-                    e_rate: first_lane(state[2]),
-                    e_hat: first_lane(C::error_estimate(state)[1]),
-                    f1: first_lane(f1),
-                    f1_hat: first_lane(f1_hat),
-                    f2: first_lane(agent.signals.sensor_fault[c] + off[c][1]),
-                    f2_hat: first_lane(f2_hat),
-                    u: first_lane(response.command[c]),
+                    r: position[c] - state[1],
+                    x: position[c],
+                    e: state[1],
+                    e_rate: state[2],
+                    e_hat: C::error_estimate(state)[1],
+                    f1,
+                    f1_hat,
+                    f2: agent.signals.sensor_fault[c] + off[c][1],
+                    f2_hat,
+                    u: response.command[c],
                 };
                 let mut held = ObserverState {
-                    integral: first_lane(state[0]),
-                    observer: [0.0; LOOP_STATES],
-                    applied_feedback: first_lane(response.applied_feedback[c]),
+                    integral: state[0],
+                    observer: [L::number(0.0); LOOP_STATES],
+                    applied_feedback: response.applied_feedback[c],
                 };
                 for (held, &state) in held.observer.iter_mut().zip(state.iter().skip(OBSERVER)) {
-                    *held = first_lane(state);
+                    *held = state;
                 }
-                shown[c] = (seen, held);
-            }
+                (seen, held)
+            }));
         }
         shown
     }
@@ -372,10 +371,12 @@ pub(crate) fn finite<L: Lane, const NC: usize>(sums: &mut [L; NC]) {
     }
 }
 
-fn first_lane<L: Lane>(value: L) -> f64 {
+/// The value of one of the lanes.
+#[inline(always)]
+fn of_lane<L: Lane>(value: L, lane: usize) -> f64 {
     let mut stored = [0.0; MAX_WIDTH];
     value.store(&mut stored);
-    stored[0]
+    stored[lane]
 }
 
 #[expect(
@@ -408,14 +409,27 @@ impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usi
 pub(crate) struct Show<'a, P, C, L: Lane, const NC: usize, const NS: usize, const NX: usize> {
     pub(crate) team: &'a mut TeamState<L, NC, NS, NX>,
     pub(crate) setting: &'a GroupParameters<'a, P, C, L::Real, NC>,
+    /// How many of the lanes have an episode.
+    pub(crate) lanes: usize,
 }
 
 impl<P: Plant<L, NC, NX>, C: Law<L, NS>, L: Lane, const NC: usize, const NS: usize, const NX: usize>
     Kernel for Show<'_, P, C, L, NC, NS, NX>
 {
-    type Output = Vec<[(ChannelSample, ObserverState); NC]>;
+    /// `[lane][agent][channel]`.
+    type Output = Vec<Vec<Shown<f64, NC>>>;
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.team.show(self.setting)
+        let shown = self.team.show(self.setting);
+        let mut in_lanes = Vec::with_capacity(self.lanes);
+        for lane in 0..self.lanes {
+            let of_lane = |value| of_lane(value, lane);
+            let mut agents = Vec::with_capacity(shown.len());
+            for channels in &shown {
+                agents.push(channels.map(|(seen, held)| (seen.map(of_lane), held.map(of_lane))));
+            }
+            in_lanes.push(agents);
+        }
+        in_lanes
     }
 }

@@ -196,11 +196,19 @@ impl<'g> GroupSimulators<'g> {
     ) -> Result<Vec<Vec<Vec<GroupTrace<T>>>>, GpuError> {
         let groups = match self {
             Self::Cpu(groups) => {
-                let of_episode = |&episode: &u32| {
-                    let under = |controller| trace_on_cpu(groups, episode, controller, every, keep);
-                    (0..controllers).map(under).collect()
+                let lanes = groups.first().map_or(1, Cpu::lanes);
+                let of_block = |block: &[u32]| {
+                    let mut all: Vec<Vec<Vec<GroupTrace<T>>>> =
+                        block.iter().map(|_| Vec::new()).collect();
+                    for controller in 0..controllers {
+                        let traced = traces_on_cpu(groups, block, controller, every, keep);
+                        for (of_episode, traced) in all.iter_mut().zip(traced) {
+                            of_episode.push(traced);
+                        }
+                    }
+                    all
                 };
-                return Ok(episodes.par_iter().map(of_episode).collect());
+                return Ok(episodes.par_chunks(lanes).flat_map_iter(of_block).collect());
             }
             Self::Gpu(groups) => groups,
         };
@@ -220,6 +228,28 @@ impl<'g> GroupSimulators<'g> {
     }
 }
 
+/// Some episodes under one controller, `[episode][group]`.
+fn traces_on_cpu<T>(
+    groups: &[Cpu],
+    episodes: &[u32],
+    controller: usize,
+    every: u32,
+    keep: Keep<'_, T>,
+) -> Vec<Vec<GroupTrace<T>>> {
+    let mut all: Vec<Vec<GroupTrace<T>>> = episodes.iter().map(|_| Vec::new()).collect();
+    for cpu in groups {
+        let traces = match episodes {
+            [episode] => vec![cpu.trace(*episode, controller, every)],
+            episodes => cpu.traces(episodes, controller, every),
+        };
+        for (of_episode, (outcomes, snapshots)) in all.iter_mut().zip(traces) {
+            let kept = snapshots.iter().map(keep).collect();
+            of_episode.push(GroupTrace { outcomes, kept });
+        }
+    }
+    all
+}
+
 /// One episode under one controller, `[group]`.
 pub(crate) fn trace_on_cpu<T>(
     groups: &[Cpu],
@@ -228,12 +258,8 @@ pub(crate) fn trace_on_cpu<T>(
     every: u32,
     keep: Keep<'_, T>,
 ) -> Vec<GroupTrace<T>> {
-    let of_group = |cpu: &Cpu| {
-        let (outcomes, snapshots) = cpu.trace(episode, controller, every);
-        let kept = snapshots.iter().map(keep).collect();
-        GroupTrace { outcomes, kept }
-    };
-    groups.iter().map(of_group).collect()
+    let mut all = traces_on_cpu(groups, &[episode], controller, every, keep);
+    all.pop().unwrap_or_default()
 }
 
 /// `[episode][controller]`.

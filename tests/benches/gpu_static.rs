@@ -38,6 +38,13 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["compile", file, bindings] => compile(Path::new(file), bindings),
+        ["--texts", folder] => {
+            fs::create_dir_all(folder).unwrap();
+            for (name, text) in texts::texts() {
+                fs::write(Path::new(folder).join(format!("{name}.wgsl")), text).unwrap();
+            }
+            ExitCode::SUCCESS
+        }
         ["--check", table] => judged(&measured(), Path::new(table)),
         ["--write", table] => {
             fs::write(table, written(&measured())).unwrap();

@@ -92,10 +92,16 @@ const CONTROLS: &[Control] = &[
         "atan2",
     ),
     control(
-        "philox",
+        "wide_product",
         "(second >> 16u)",
         "(second >> 17u)",
         "wide_product",
+    ),
+    control(
+        "wide_product_int64",
+        "u32(product >> 32u)",
+        "u32(product >> 31u)",
+        "wide_product_int64",
     ),
     control(
         "integrator",
@@ -460,10 +466,11 @@ fn val_every_change_is_of_a_text_that_there_is() {
     let files: BTreeSet<&str> = controls().map(|control| control.file).collect();
     assert_eq!(
         files.len(),
-        19,
+        21,
         "each file of shaders/ that has functions, and the constants: {files:?}"
     );
-    let texts = shapes::probed().map(|shape| shape.text());
+    let shapes = shapes::probed().into_iter().chain([shapes::plain_int64()]);
+    let texts: Vec<String> = shapes.map(|shape| shape.text()).collect();
     for Control { old, .. } in controls() {
         let most = texts.iter().map(|text| text.matches(old).count()).max();
         assert_eq!(most, Some(1), "{old:?}");

@@ -85,6 +85,14 @@ impl Lab {
         }
     }
 
+    /// Whether shaders may have 64-bit integers here.
+    pub(super) fn has_int64(&self) -> bool {
+        self.gpu
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .has_int64()
+    }
+
     /// What a probe leaves, of each invocation.
     pub(super) fn run(&self, job: &Job<'_>) -> Vec<Left> {
         let text = self.text(job);

@@ -6,6 +6,7 @@ use super::numbers::Numbers;
 use super::shapes;
 use super::tracked::Tracked;
 use super::world::World;
+use crate::backend::gpu::shape::Shape;
 use crate::model::lanes::Lane;
 use crate::model::lanes::math::{self, clamp};
 use crate::model::plant::uav::{Axis, body_axis};
@@ -25,7 +26,18 @@ pub(super) fn probe(
     random: impl Fn(&mut Numbers) -> Words,
     twin: impl Fn(&[u32]) -> Vec<Expected>,
 ) -> Compared {
-    let shape = shapes::plain();
+    probe_in(shapes::plain(), lab, body, edges, random, twin)
+}
+
+/// The same of the shaders of a shape.
+fn probe_in(
+    shape: Shape,
+    lab: &Lab,
+    body: &str,
+    edges: Vec<Words>,
+    random: impl Fn(&mut Numbers) -> Words,
+    twin: impl Fn(&[u32]) -> Vec<Expected>,
+) -> Compared {
     let world = World::<Axis<f32>, 1, 10, 0>::new(shape.clone(), shapes::axis());
     let mut inputs = edges;
     let mut numbers = Numbers::new(5, 0, 0);
@@ -318,6 +330,18 @@ pub(super) fn ln_split(lab: &Lab) -> Compared {
 }
 
 pub(super) fn wide_products(lab: &Lab) -> Compared {
+    wide_products_in(shapes::plain(), lab)
+}
+
+pub(super) fn wide_products_int64(lab: &Lab) -> Compared {
+    if !lab.has_int64() {
+        println!("SKIPPED: the device has no 64-bit integers");
+        return Compared::default();
+    }
+    wide_products_in(shapes::plain_int64(), lab)
+}
+
+fn wide_products_in(shape: Shape, lab: &Lab) -> Compared {
     let body =
         "let both = wide_product(asked(0u), asked(1u)); answer(0u, both.x); answer(1u, both.y);";
     let values = [0, 1, 0xffff, 0x1_0000, u32::MAX];
@@ -325,7 +349,8 @@ pub(super) fn wide_products(lab: &Lab) -> Compared {
         .iter()
         .flat_map(|&a| values.map(|b| vec![a, b]))
         .collect();
-    probe(
+    probe_in(
+        shape,
         lab,
         body,
         edges,

@@ -171,6 +171,7 @@ fn shape(plant: PlantKind, team: usize, ftc: bool, coupled: bool, counts: Counts
         },
         measured_integral: false,
         observer_measured: coupled,
+        int64: false,
         lists: lists(counts),
     }
 }
@@ -180,6 +181,14 @@ pub(super) fn plain() -> Shape {
     Shape {
         lanes: 64,
         ..shape(PlantKind::Axis, 1, true, false, NONE)
+    }
+}
+
+/// The same on a device with 64-bit integers.
+pub(super) fn plain_int64() -> Shape {
+    Shape {
+        int64: true,
+        ..plain()
     }
 }
 

@@ -125,6 +125,11 @@ pub(super) const PURE: &[Probe] = &[
     probe!("atan2", ["atan2"], pure::atan2),
     probe!("ln_split", ["ln_split"], pure::ln_split),
     probe!("wide_product", ["wide_product"], pure::wide_products),
+    probe!(
+        "wide_product_int64",
+        ["wide_product"],
+        pure::wide_products_int64
+    ),
     probe!("philox4x32", ["philox4x32"], pure::philox),
     probe!("address_words", ["address_words"], pure::address_words),
     probe!("body_axis", ["body_axis"], pure::body_axes),

@@ -459,7 +459,7 @@ pub(super) fn shown<P: Flies<NC, NX>, const NC: usize, const NS: usize, const NX
                     shown.u,
                 ];
                 for (number, shown) in again.into_iter().zip(shown) {
-                    assert_eq!(number.value, shown as f32);
+                    assert_eq!(number.value, shown.value);
                     scene.answer_number(a, c, number);
                 }
             }

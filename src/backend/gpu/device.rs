@@ -58,6 +58,7 @@ impl Gpu {
 
     fn open_adapter(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
         let request = wgpu::DeviceDescriptor {
+            required_features: found.features() & wgpu::Features::SHADER_INT64,
             required_limits: found.limits(),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
@@ -95,6 +96,13 @@ impl Gpu {
     /// Gives the device up, as if its driver had reset it: everything that follows fails with [`GpuError::Lost`].
     pub fn destroy(&self) {
         self.device.destroy();
+    }
+
+    /// Whether shaders may have 64-bit integers.
+    pub(crate) fn has_int64(&self) -> bool {
+        self.device
+            .features()
+            .contains(wgpu::Features::SHADER_INT64)
     }
 
     /// The limits of the device.

@@ -98,6 +98,7 @@ pub(super) fn shape(
         coupling: Coupling::of(group),
         measured_integral: group.control.integral == IntegralKind::Sensor,
         observer_measured: group.initial.observer == ObserverStart::Measured,
+        int64: gpu.has_int64(),
         lists,
     };
     // The same for every batch: another shape is another text, which a driver might compile to other roundings.

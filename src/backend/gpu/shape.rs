@@ -31,6 +31,8 @@ pub(crate) struct Shape {
     pub(crate) measured_integral: bool,
     /// Whether the observers start from what is measured.
     pub(crate) observer_measured: bool,
+    /// Whether the device has 64-bit integers.
+    pub(crate) int64: bool,
     /// Its signals.
     pub(crate) lists: Lists,
 }

@@ -16,6 +16,11 @@ use crate::random::philox::{self, Stream};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use std::fmt::Write;
 
+/// The 64-bit product of the random numbers: from 16-bit ones, and where the device has 64-bit integers.
+const WIDE_PRODUCT: [&str; 2] = [
+    include_str!("../../../shaders/wide_product.wgsl"),
+    include_str!("../../../shaders/wide_product_int64.wgsl"),
+];
 /// The files on which every plant builds, in the order of what builds on what.
 const BELOW: [&str; 6] = [
     include_str!("../../../shaders/lanes.wgsl"),
@@ -56,7 +61,8 @@ impl Shape {
             }
             PlantKind::Leg => &BIPED,
         };
-        for file in BELOW.iter().chain(plant).chain(&ABOVE) {
+        let product = &WIDE_PRODUCT[usize::from(self.int64)..][..1];
+        for file in product.iter().chain(&BELOW).chain(plant).chain(&ABOVE) {
             text.push('\n');
             text.push_str(file);
         }

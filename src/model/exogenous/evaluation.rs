@@ -11,6 +11,94 @@ use super::inputs::ExogenousInputs;
 use super::lists::turned;
 use crate::model::lanes::{Lane, MAX_WIDTH};
 
+/// What has signals: they themselves, or an agent.
+pub(crate) trait HasSignals<L: Lane, const NC: usize> {
+    /// Its signals.
+    fn signals(&mut self) -> &mut ExogenousInputs<L, NC>;
+}
+
+impl<L: Lane, const NC: usize> HasSignals<L, NC> for ExogenousInputs<L, NC> {
+    #[inline(always)]
+    fn signals(&mut self) -> &mut Self {
+        self
+    }
+}
+
+/// Evaluates d1, f2 and the actuators of all agents at a moment of step number `step`, whose phases are half a step
+/// further each. List by list: a sine takes long, but the next agent's need not wait for it.
+#[inline(always)]
+pub(crate) fn evaluate<L: Lane, S: HasSignals<L, NC>, const NC: usize>(
+    all: &mut [S],
+    step: u32,
+    moment: Moment,
+) {
+    let advance = moment != Moment::Start;
+    let half = L::number(0.5);
+    // Agents that faults spare have shorter lists.
+    let (mut sines, mut gusts, mut sensor_waves, mut squares) = (0, 0, 0, 0);
+    for own in all.iter_mut() {
+        let own = own.signals();
+        sines = sines.max(own.lists.sines.len());
+        gusts = gusts.max(own.lists.gusts.len());
+        sensor_waves = sensor_waves.max(own.lists.sensor_waves.len());
+        squares = squares.max(own.lists.squares.len());
+        own.disturbance = own.held_disturbance;
+        own.sensor_fault = own.held_sensor;
+    }
+    for k in 0..sines {
+        for own in all.iter_mut() {
+            let own = own.signals();
+            let Some(sines) = own.lists.sines.get_mut(k) else {
+                continue;
+            };
+            for c in 0..NC {
+                let sine = turned(&mut sines[c], advance);
+                own.disturbance[c] = sine.mul_add(sines[c].held, own.disturbance[c]);
+            }
+        }
+    }
+    for k in 0..gusts {
+        for own in all.iter_mut() {
+            let own = own.signals();
+            let Some(gusts) = own.lists.gusts.get_mut(k) else {
+                continue;
+            };
+            for c in 0..NC {
+                let shape = turned(&mut gusts[c], advance).mul_add(half, half);
+                own.disturbance[c] = shape.mul_add(gusts[c].held, own.disturbance[c]);
+            }
+        }
+    }
+    for k in 0..sensor_waves {
+        for own in all.iter_mut() {
+            let own = own.signals();
+            let Some(waves) = own.lists.sensor_waves.get_mut(k) else {
+                continue;
+            };
+            for c in 0..NC {
+                let sine = turned(&mut waves[c], advance);
+                own.sensor_fault[c] = sine.mul_add(waves[c].held, own.sensor_fault[c]);
+            }
+        }
+    }
+    for k in 0..squares {
+        for own in all.iter_mut() {
+            let own = own.signals();
+            let Some(squares) = own.lists.squares.get_mut(k) else {
+                continue;
+            };
+            for c in 0..NC {
+                let sine = turned(&mut squares[c], advance);
+                let shape = (sine * squares[c].inverse_smoothing).tanh();
+                own.sensor_fault[c] = shape.mul_add(squares[c].held, own.sensor_fault[c]);
+            }
+        }
+    }
+    for own in all {
+        own.signals().evaluate_command(step, moment);
+    }
+}
+
 impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
     /// Sets what is held over step number `step`; `team` is the sum of the team's last commands.
     #[inline(always)]
@@ -92,39 +180,10 @@ impl<L: Lane, const NC: usize> ExogenousInputs<L, NC> {
         }
     }
 
-    /// Evaluates d1, f2 and the actuators at a moment of step number `step`, whose phases are half a step further each.
+    /// [`evaluate`] for these alone.
     #[inline(always)]
     pub(crate) fn evaluate(&mut self, step: u32, moment: Moment) {
-        let advance = moment != Moment::Start;
-        let half = L::number(0.5);
-        self.disturbance = self.held_disturbance;
-        self.sensor_fault = self.held_sensor;
-        for sines in &mut self.lists.sines {
-            for c in 0..NC {
-                let sine = turned(&mut sines[c], advance);
-                self.disturbance[c] = sine.mul_add(sines[c].held, self.disturbance[c]);
-            }
-        }
-        for gusts in &mut self.lists.gusts {
-            for c in 0..NC {
-                let shape = turned(&mut gusts[c], advance).mul_add(half, half);
-                self.disturbance[c] = shape.mul_add(gusts[c].held, self.disturbance[c]);
-            }
-        }
-        for waves in &mut self.lists.sensor_waves {
-            for c in 0..NC {
-                let sine = turned(&mut waves[c], advance);
-                self.sensor_fault[c] = sine.mul_add(waves[c].held, self.sensor_fault[c]);
-            }
-        }
-        for squares in &mut self.lists.squares {
-            for c in 0..NC {
-                let sine = turned(&mut squares[c], advance);
-                let shape = (sine * squares[c].inverse_smoothing).tanh();
-                self.sensor_fault[c] = shape.mul_add(squares[c].held, self.sensor_fault[c]);
-            }
-        }
-        self.evaluate_command(step, moment);
+        evaluate(std::slice::from_mut(self), step, moment);
     }
 
     /// x and x' as they are measured at a moment of the step.

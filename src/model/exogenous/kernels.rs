@@ -2,10 +2,12 @@
 //! and number of channels, and not into every loop of every plant and controller.
 
 use super::delay_line::Moment;
+use super::evaluation::{self, HasSignals};
 use super::friction::{self, Friction};
 use super::inputs::ExogenousInputs;
 use super::vortex::{self, Vortex};
 use crate::model::lanes::{Kernel, Lane, MAX_WIDTH};
+use std::marker::PhantomData;
 
 /// [`ExogenousInputs::hold`], for the start of a step.
 #[inline(always)]
@@ -43,31 +45,33 @@ impl<L: Lane, const NC: usize> Kernel for Hold<'_, L, NC> {
     }
 }
 
-/// [`ExogenousInputs::evaluate`], for the middle and the end of a step.
+/// [`evaluation::evaluate`], for the middle and the end of a step.
 #[inline(always)]
-pub(crate) fn evaluate<L: Lane, const NC: usize>(
-    signals: &mut ExogenousInputs<L, NC>,
+pub(crate) fn evaluate<L: Lane, S: HasSignals<L, NC>, const NC: usize>(
+    all: &mut [S],
     step: u32,
     moment: Moment,
 ) {
     L::dispatch(Evaluate {
-        signals,
+        all,
         step,
         moment,
+        lanes: PhantomData::<L>,
     });
 }
 
-struct Evaluate<'a, L: Lane, const NC: usize> {
-    signals: &'a mut ExogenousInputs<L, NC>,
+struct Evaluate<'a, L, S, const NC: usize> {
+    all: &'a mut [S],
     step: u32,
     moment: Moment,
+    lanes: PhantomData<L>,
 }
 
-impl<L: Lane, const NC: usize> Kernel for Evaluate<'_, L, NC> {
+impl<L: Lane, S: HasSignals<L, NC>, const NC: usize> Kernel for Evaluate<'_, L, S, NC> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        self.signals.evaluate(self.step, self.moment);
+        evaluation::evaluate(self.all, self.step, self.moment);
     }
 }
 

@@ -2,7 +2,7 @@
 //! functions of a GPU may be off by 2^-11, and those of the host differ from machine to machine.
 //!
 //! The polynomials were fitted by iteratively reweighted least squares on Chebyshev nodes (near minimax); the error of
-//! each is stated beside it and tested. Double precision uses the standard library.
+//! each is stated beside it and tested. Double precision has `math_double`.
 
 use super::lane::Lane;
 

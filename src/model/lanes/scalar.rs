@@ -1,7 +1,7 @@
 //! The scalars as lanes, one episode wide: `f64`, the reference, and `f32`, the twin of the GPU.
 
 use super::lane::{Kernel, Lane, Real};
-use super::math;
+use super::{math, math_double};
 
 impl Real for f64 {
     const MAX: Self = f64::MAX;
@@ -87,14 +87,8 @@ impl Lane for f64 {
         phase.wrapping_add(step)
     }
     #[inline(always)]
-    #[expect(
-        clippy::cast_possible_wrap,
-        clippy::cast_precision_loss,
-        reason = "the signed reading of the phase is meant"
-    )]
     fn turns_sin(phase: u64) -> Self {
-        // The signed reading lies in [-1/2, 1/2) turns, where the conversion loses at most 2^-54 turns.
-        (phase as i64 as f64 * (std::f64::consts::TAU / 18_446_744_073_709_551_616.0)).sin()
+        math_double::sin_folded(math_double::folded(phase))
     }
     #[inline(always)]
     fn turns_from_words(words: &[u32]) -> u64 {
@@ -106,19 +100,20 @@ impl Lane for f64 {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        math_double::sin_cos(self)
     }
     #[inline(always)]
     fn tanh(self) -> Self {
-        f64::tanh(self)
+        math_double::tanh(self)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
+        math_double::atan2(self, x)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        f64::ln(self)
+        let (mantissa, exponent) = math_double::split(self);
+        math_double::ln_split(mantissa, exponent)
     }
     #[inline(never)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {

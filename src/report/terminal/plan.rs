@@ -1,7 +1,7 @@
 //! What a campaign would do.
 
 use super::drawn::{drawn, drawn_json};
-use super::effort::{lasting, seconds, steps};
+use super::effort::{lasting, seconds, steps, table_seconds};
 use crate::campaign::lints::cautions;
 use crate::campaign::{Campaign, Detail, Fault, Goal, Stratum, StratumFaults};
 use crate::controllers::{self, GainSet};
@@ -62,7 +62,7 @@ pub fn plan(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> String {
     })
 }
 
-/// How much room the results take in each detail.
+/// How much room the results take in each detail, and how much longer they take for it.
 fn room(campaign: &Campaign, extent: Extent) -> String {
     let of_detail = |(detail, size): (Detail, u64)| {
         let mark = if detail == campaign.detail {
@@ -70,7 +70,12 @@ fn room(campaign: &Campaign, extent: Extent) -> String {
         } else {
             ""
         };
-        format!("{} in detail {:?}{mark}", bytes(size), detail.word())
+        format!(
+            "{} and {} of one core in detail {:?}{mark}",
+            bytes(size),
+            lasting(table_seconds(size)),
+            detail.word()
+        )
     };
     let details = Detail::ALL.into_iter().zip(extent.tables);
     let details: Vec<String> = details.skip(1).map(of_detail).collect();
@@ -199,6 +204,8 @@ pub fn plan_json(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> Valu
     let notes = [cautions(campaign), controllers::cautions(campaign, gains)].concat();
     let sizes = Detail::ALL.iter().zip(extent.tables);
     let sizes: BTreeMap<&str, u64> = sizes.map(|(own, size)| (own.word(), size)).collect();
+    let times = sizes.iter().map(|(&own, &size)| (own, table_seconds(size)));
+    let times: BTreeMap<&str, f64> = times.collect();
     json!({
         "name": campaign.name, "episodes": campaign.episodes, "team": campaign.agents(), "seed": campaign.seed,
         "groups": campaign.groups().iter().map(|group| json!({
@@ -211,7 +218,7 @@ pub fn plan_json(campaign: &Campaign, gains: &[GainSet], extent: Extent) -> Valu
         "steps": campaign.time.steps, "step_s": campaign.time.step_s, "controllers": campaign.controllers,
         "drawn": drawn_json(campaign),
         "roughly_s": seconds(campaign),
-        "large_tables_bytes": sizes, "detail": campaign.detail.word(), "memory_bytes": extent.memory,
+        "large_tables_bytes": sizes, "large_tables_s": times, "detail": campaign.detail.word(), "memory_bytes": extent.memory,
         "notes": notes,
     })
 }

@@ -15,8 +15,8 @@ fn check_shows_what_would_be_drawn_and_simulates_and_writes_nothing() {
     for word in [
         "2000000 episodes of 3 UAVs",
         "large tables: about ",
-        "in detail \"episodes\", ",
-        "memory for the statistics: about ",
+        " of one core in detail \"episodes\", ",
+        "memory for the statistics:",
         "ftc, pid, pid-tuned",
         "certified rho",
         "mass_scale",
@@ -33,6 +33,9 @@ fn check_shows_what_would_be_drawn_and_simulates_and_writes_nothing() {
         (&"all".into(), &0.into())
     );
     assert!(sizes["episodes"].as_u64() < sizes["all"].as_u64());
+    let times = &plan["large_tables_s"];
+    assert_eq!(times["summary"], 0.0);
+    assert!(times["episodes"].as_f64() < times["all"].as_f64());
     // More than any machine holds is refused, before anything else.
     let refused = place.program(&["check", "c.toml", "--episodes", "4000000000"]);
     assert_eq!(refused.code, 2);

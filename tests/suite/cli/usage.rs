@@ -22,14 +22,6 @@ fn a_wrong_command_line_exits_with_2_and_says_what_would_be_right() {
             ["--seed", "from 0 to 18446744073709551615"],
         ),
         (
-            "run c.toml --precision f64 --simd avx2",
-            ["--simd", "leave it out, or use --precision f32"],
-        ),
-        (
-            "run c.toml --precision f64 --simd scalar",
-            ["--simd", "leave it out, or use --precision f32"],
-        ),
-        (
             "plan --failure-rate 0.01 --confidence 95",
             ["'95'", "0.95 for 95 percent"],
         ),

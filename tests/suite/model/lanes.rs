@@ -29,6 +29,11 @@ fn on_lanes<L: Lane>(arguments: &[f64], function: impl Fn(L) -> L) -> Vec<f64> {
     values
 }
 
+/// Does work with the instructions that lanes of type `L` need.
+fn with_features<L: Lane>(work: impl FnOnce()) {
+    L::dispatch(Apply::<L, _>(work, std::marker::PhantomData));
+}
+
 /// Runs a generic check on every lane type that this processor has.
 macro_rules! on_every_lane {
     ($check:ident) => {
@@ -36,23 +41,14 @@ macro_rules! on_every_lane {
         $check::<f32>();
         #[cfg(target_arch = "x86_64")]
         {
+            use urts_mc::model::lanes::{double, simd};
             if Simd::Avx2.is_available() {
-                urts_mc::model::lanes::simd::F32x8::dispatch(Apply::<
-                    urts_mc::model::lanes::simd::F32x8,
-                    _,
-                >(
-                    $check::<urts_mc::model::lanes::simd::F32x8>,
-                    std::marker::PhantomData,
-                ));
+                with_features::<simd::F32x8>($check::<simd::F32x8>);
+                with_features::<double::F64x4>($check::<double::F64x4>);
             }
             if Simd::Avx512.is_available() {
-                urts_mc::model::lanes::simd::F32x16::dispatch(Apply::<
-                    urts_mc::model::lanes::simd::F32x16,
-                    _,
-                >(
-                    $check::<urts_mc::model::lanes::simd::F32x16>,
-                    std::marker::PhantomData,
-                ));
+                with_features::<simd::F32x16>($check::<simd::F32x16>);
+                with_features::<double::F64x8>($check::<double::F64x8>);
             }
         }
     };
@@ -139,6 +135,76 @@ fn elementary_functions<L: Lane>() {
         f64::ln,
         SINGLE_TOL,
     );
+}
+
+/// Four units in the last place of a double near one: some operations of half a unit each.
+const DOUBLE_TOL: f64 = 9e-16;
+
+fn elementary_functions_in_double<L: Lane>() {
+    let angles = grid(-7.0, 7.0, 20_001);
+    let sine = on_lanes::<L>(&angles, |x| x.sin_cos().0);
+    close("sin", &angles, &sine, f64::sin, DOUBLE_TOL);
+    let cosine = on_lanes::<L>(&angles, |x| x.sin_cos().1);
+    close("cos", &angles, &cosine, f64::cos, DOUBLE_TOL);
+    // Relative to a small value too.
+    let small = grid(1e-9, 0.1, 5001);
+    for (name, ours, expected) in [
+        (
+            "tanh",
+            on_lanes::<L>(&small, Lane::tanh),
+            f64::tanh as fn(f64) -> f64,
+        ),
+        ("sin", on_lanes::<L>(&small, |x| x.sin_cos().0), f64::sin),
+        (
+            "atan2",
+            on_lanes::<L>(&small, |y| y.atan2(L::number(1.0))),
+            f64::atan,
+        ),
+    ] {
+        let relative: Vec<f64> = small
+            .iter()
+            .zip(&ours)
+            .map(|(x, y)| y / expected(*x))
+            .collect();
+        close(name, &small, &relative, |_| 1.0, 2.0 * DOUBLE_TOL);
+    }
+    let wide = grid(-25.0, 25.0, 20_001);
+    let tangent = on_lanes::<L>(&wide, Lane::tanh);
+    close("tanh", &wide, &tangent, f64::tanh, DOUBLE_TOL);
+    for x in [-2.0, -1.0, -1e-3, 0.0, 1e-3, 0.7, 3.0] {
+        let angle = on_lanes::<L>(&wide, |y| y.atan2(L::number(x)));
+        close("atan2", &wide, &angle, |y| y.atan2(x), DOUBLE_TOL);
+    }
+    // ln reaches 16 in size.
+    let positive = grid(1e-7, 40.0, 20_001);
+    let logarithm = on_lanes::<L>(&positive, Lane::ln);
+    close("ln", &positive, &logarithm, f64::ln, 4.0 * DOUBLE_TOL);
+    let near_one = grid(0.9, 1.1, 501);
+    let logarithm = on_lanes::<L>(&near_one, Lane::ln);
+    close("ln", &near_one, &logarithm, f64::ln, 0.1 * DOUBLE_TOL);
+    // A phase of 64 bits: the sine of an exact fraction of a turn.
+    let turns: Vec<f64> = (0..4096).map(|k| f64::from(k) / 4096.0).collect();
+    for part in turns.chunks(L::WIDTH) {
+        let mut stored = [0.0; MAX_WIDTH];
+        L::turns_sin(L::turns(part)).store(&mut stored);
+        let sine = |turns: f64| (std::f64::consts::TAU * turns).sin();
+        close("turns_sin", part, &stored[..part.len()], sine, DOUBLE_TOL);
+    }
+}
+
+#[test]
+fn val_double_precision_is_good_to_some_units_in_the_last_place() {
+    elementary_functions_in_double::<f64>();
+    #[cfg(target_arch = "x86_64")]
+    {
+        use urts_mc::model::lanes::double::{F64x4, F64x8};
+        if Simd::Avx2.is_available() {
+            with_features::<F64x4>(elementary_functions_in_double::<F64x4>);
+        }
+        if Simd::Avx512.is_available() {
+            with_features::<F64x8>(elementary_functions_in_double::<F64x8>);
+        }
+    }
 }
 
 #[test]

@@ -62,7 +62,10 @@ fn trajectory(campaign: &Campaign, case: &Value, gains: [f64; 3]) -> Vec<Snapsho
     }
     let model = Model::<f64>::new(campaign.first_group());
     let controller = Controller::true_state(&[gains]);
-    model.trace::<f64>(&controller, &episode, EVERY).1
+    model
+        .trace::<f64>(&controller, &[episode], EVERY)
+        .remove(0)
+        .1
 }
 
 /// The largest difference of a joint's angle from the case, rad.

@@ -49,6 +49,50 @@ fn eight_and_sixteen_robots_side_by_side_give_the_same_bits() {
 }
 
 #[test]
+fn the_reference_has_the_same_bits_in_every_layout() {
+    let robots = ["full", "limited"].map(everything);
+    let drones = ["uav-faults", "uav-physical", "scenario-b"].map(|name| altered(name, &[]));
+    for campaign in robots.into_iter().chain(drones) {
+        let campaign = campaign.with(|own| own.controllers.truncate(1));
+        let [scalar, others @ ..] = Simd::ALL;
+        let results = |simd| -> Vec<String> {
+            let simulated = simulated(&campaign, Precision::F64, Some(simd), 0..9);
+            let outcomes = simulated.iter().map(|own| format!("{:?}", own.outcomes));
+            outcomes.collect()
+        };
+        // A block in full, and one with lanes to spare.
+        let expected = results(scalar);
+        assert!(expected[0] != expected[1]);
+        for simd in others.into_iter().filter(|simd| simd.is_available()) {
+            for (episode, (found, expected)) in results(simd).iter().zip(&expected).enumerate() {
+                assert_eq!(
+                    found, expected,
+                    "{}, {simd:?}, episode {episode}",
+                    campaign.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn traces_side_by_side_are_those_of_single_episodes() {
+    let campaign = everything("limited").with(|own| own.time.steps = 60);
+    let gains = gains(&campaign);
+    for precision in [Precision::F32, Precision::F64] {
+        let cpu = Cpu::new(campaign.first_group(), &gains.loops(), precision, None);
+        let episodes: Vec<u32> = (3..22).collect();
+        let together = cpu.traces(&episodes, 0, 7);
+        assert_eq!(together.len(), episodes.len());
+        for (&episode, together) in episodes.iter().zip(&together) {
+            let alone = cpu.trace(episode, 0, 7);
+            assert_eq!(alone.1.len(), 10);
+            assert!(format!("{alone:?}") == format!("{together:?}"), "{episode}");
+        }
+    }
+}
+
+#[test]
 fn single_precision_stays_within_the_contract_on_walks() {
     // The paper's robots, without an initial error that no torque of theirs could correct.
     let slightly = [
