@@ -7,7 +7,7 @@ use super::kinds::DisturbanceKind;
 use super::quantity::RandomQuantity;
 use crate::agent::{ActuationKind, Agent, ChannelGroup, ChannelRole};
 use crate::reference::Reference;
-use crate::synthesis::ChannelDesign;
+use crate::synthesis::{ChannelDesign, Sensors};
 use std::ops::{Deref, DerefMut, Range};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -62,6 +62,8 @@ pub struct GroupParts {
     pub reference: Reference,
     /// Where the gains come from.
     pub synthesis: GainSource,
+    /// The groups of channels that share sensors, if there are any.
+    pub sensors: Vec<ChannelSensors>,
     /// True mass over modelled mass, per agent.
     pub mass_scale: RandomQuantity,
     /// True inertia over modelled inertia, per agent.
@@ -235,6 +237,17 @@ pub struct GainSource {
     pub placed: PidPlaced,
     /// Additional controllers.
     pub named: Vec<NamedGains>,
+}
+
+/// The sensors of a group of channels that share some.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelSensors {
+    /// Name of the group: "position", "attitude", "left-leg" or "right-leg".
+    pub name: &'static str,
+    /// Which of the agent's channel groups has its weights.
+    pub place: usize,
+    /// The sensors.
+    pub sensors: Sensors,
 }
 
 /// How the controller "pid-placed" is placed.

@@ -33,8 +33,8 @@ pub use disturbances_and_faults::{Disturbance, Fault, FaultChannels};
 pub use error::CampaignError;
 pub use file::{CouplingCoordinates, IntegralKind, Link, ObserverStart};
 pub use group::{
-    AgentGroup, ChannelsOfCampaign, Control, GainSource, GroupParts, Initial, NamedGains,
-    PidPlaced, PlacedPoles, Verdict,
+    AgentGroup, ChannelSensors, ChannelsOfCampaign, Control, GainSource, GroupParts, Initial,
+    NamedGains, PidPlaced, PlacedPoles, Verdict,
 };
 pub use kinds::{DisturbanceKind, FaultKind, FaultTarget};
 pub use measure::{EpisodeNumber, LoopNumber, Measure, MeasuredChannels, Side};

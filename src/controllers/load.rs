@@ -3,6 +3,7 @@
 use super::built_in::{built_in, failed, takes_synthesis};
 use super::error::GainsError;
 use super::file::{self, GainsFile};
+use super::full_order::refuse_sensors;
 use super::gain_set::GainSet;
 use crate::campaign::{AgentGroup, Campaign};
 use crate::synthesis::{ChannelSynthesis, synthesize};
@@ -25,8 +26,10 @@ impl GainSet {
     /// them.
     ///
     /// # Errors
-    /// If a synthesis fails, a file is unreadable or refused, or the step is too long for the gains.
+    /// If a synthesis fails, a file is unreadable or refused, the step is too long for the gains, or channels share
+    /// sensors, which episodes cannot simulate.
     pub fn synthesize_or_load(group: &AgentGroup) -> Result<Self, GainsError> {
+        refuse_sensors(group)?;
         let source = &group.synthesis;
         let takes = |name: &String| takes_synthesis(&source.placed, name);
         let synthesized = if source.gains.is_none() && group.controllers.iter().any(takes) {
@@ -60,6 +63,7 @@ impl GainSet {
     pub fn read(campaign: &Campaign, path: &Path) -> Result<Vec<Self>, GainsError> {
         let text = file::text_of(path)?;
         let of_group = |group: &AgentGroup| {
+            refuse_sensors(group)?;
             let read = |name: &String| file::controller(group, name, (path, &text), name, false);
             let controllers = group.controllers.iter().map(read);
             Ok(Self {

@@ -12,9 +12,9 @@ pub const ERROR_STATES: usize = 3;
 pub struct Channel {
     /// System matrix, s x s.
     pub a: DMatrix<f64>,
-    /// Input of the feedback acceleration, s x 1.
+    /// Input of the feedback acceleration, s x 1; s x n of n channels that share sensors.
     pub b: DMatrix<f64>,
-    /// Measurements (integral of x, x, x'), 3 x s.
+    /// Measurements (integral of x, x, x'), 3 x s; l x s of l sensors.
     pub c: DMatrix<f64>,
 }
 

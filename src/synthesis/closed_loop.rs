@@ -1,6 +1,8 @@
 //! The closed loop (23) of one channel with the weights of (24), and its true H-infinity norm.
 
-use super::channel::{ERROR_STATES, augmented_channel, estimation_weight, inputs, tracking_weight};
+use super::channel::{
+    Channel, ERROR_STATES, augmented_channel, estimation_weight, inputs, tracking_weight,
+};
 use super::design::ChannelDesign;
 use super::gains::ControllerGains;
 use super::linalg::join;
@@ -23,25 +25,38 @@ pub(super) struct ClosedLoop {
 impl ClosedLoop {
     /// The closed loop of `gains`, which must have as many states as the design.
     pub(super) fn of(design: &ChannelDesign, gains: &ControllerGains) -> Self {
-        let s = design.states();
-        let channel = augmented_channel(design);
-        let (k, l) = (gains.k_matrix(), gains.l_matrix());
-        let bk = &channel.b * &k;
+        Self::joined(
+            &augmented_channel(design),
+            [&gains.k_matrix(), &gains.l_matrix()],
+            [&tracking_weight(design), &estimation_weight(design)],
+            design.r,
+            ERROR_STATES,
+        )
+    }
+
+    /// The closed loop of a channel, or of several that share sensors, with K and L, Q1 and Q2, and R; the states after
+    /// the first `errors` are those of faults.
+    pub(super) fn joined(
+        channel: &Channel,
+        [k, l]: [&DMatrix<f64>; 2],
+        [q1, q2]: [&DMatrix<f64>; 2],
+        r: f64,
+        errors: usize,
+    ) -> Self {
+        let s = channel.a.nrows();
+        let bk = &channel.b * k;
         let zero = DMatrix::zeros(s, s);
         let a = join(&[
             [&(&channel.a + &bk), &-&bk],
             [&zero, &(&channel.a + l * &channel.c)],
         ]);
-        let q = join(&[
-            [&tracking_weight(design), &zero],
-            [&zero, &estimation_weight(design)],
-        ]);
-        let k_tilde = join(&[[&k, &-&k]]);
-        let fault_rows = (ERROR_STATES..s).chain(s + ERROR_STATES..2 * s);
+        let q = join(&[[q1, &zero], [&zero, q2]]);
+        let k_tilde = join(&[[k, &-k]]);
+        let fault_rows = (errors..s).chain(s + errors..2 * s);
         Self {
             a,
             e: inputs(2 * s, fault_rows),
-            weight: q + k_tilde.transpose() * k_tilde * design.r,
+            weight: q + k_tilde.transpose() * k_tilde * r,
         }
     }
 

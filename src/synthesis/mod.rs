@@ -17,6 +17,7 @@ mod closed_loop;
 mod design;
 mod error;
 mod feedback;
+mod full_order;
 mod gains;
 pub mod lapack;
 mod linalg;
@@ -36,6 +37,11 @@ pub use channel::{Channel, ERROR_STATES, augmented_channel, error_channel, reduc
 pub use design::{ChannelDesign, MAX_WINDOW, geometric_q2};
 pub use error::{Step, SynthesisError};
 pub use feedback::{RiccatiGain, feedback_riccati};
+pub use full_order::{
+    Confirmation, FullOrderCertificate, FullOrderGains, FullOrderSynthesis,
+    MOST_CONFIRMED_CHANNELS, MOST_CONFIRMED_STATES, Sensor, SensorChanges, SensorError, SensorRow,
+    Sensors, Solver, synthesize_full_order,
+};
 pub use gains::{
     ControllerGains, LOOP_STATES, LoopGains, loop_gains, pid_gains, pid_robust_observer_gains,
     poles,

@@ -16,18 +16,21 @@ use super::lmi::{Optimum, Unknowns, minimise};
 use super::riccati::{smallest_feasible, stabilising_solution};
 use nalgebra::DMatrix;
 
-const REMEDY: &str = "lower nu, r or the weights q2, or raise the leak of the smoothing model";
+/// What besides rho may make the filter feasible.
+pub(super) const REMEDY: &str =
+    "lower nu, r or the weights q2, or raise the leak of the smoothing model";
 
 /// A filter problem: weights on the estimation error, model errors, measurement noise.
 #[derive(Clone, Debug)]
 pub(super) struct ObserverProblem {
-    channel: Channel,
+    /// What is observed: one channel, or several that share sensors.
+    pub(super) channel: Channel,
     /// Qf, the weight on the estimation error.
-    q: DMatrix<f64>,
+    pub(super) q: DMatrix<f64>,
     /// Where the model errors enter.
-    e: DMatrix<f64>,
+    pub(super) e: DMatrix<f64>,
     /// Diagonal of N, one per measurement.
-    noise: [f64; 3],
+    pub(super) noise: Vec<f64>,
 }
 
 impl ObserverProblem {
@@ -41,7 +44,7 @@ impl ObserverProblem {
             channel,
             q: estimation_weight(design) + k.transpose() * k * design.r,
             e,
-            noise: [design.nu; 3],
+            noise: vec![design.nu; 3],
         }
     }
 
@@ -51,17 +54,23 @@ impl ObserverProblem {
         Self {
             q: DMatrix::zeros(ERROR_STATES, ERROR_STATES),
             e: &channel.b * model_error,
-            noise,
+            noise: noise.to_vec(),
             channel,
         }
     }
 
     /// X of A X + X A' - X (C' N^-2 C - Qf / rho^2) X + E E' = 0.
     pub(super) fn riccati(&self, rho: f64) -> Option<DMatrix<f64>> {
+        let [a, s, q] = self.equation(rho);
+        stabilising_solution(&a, &s, &q)
+    }
+
+    /// A', C' N^-2 C - Qf / rho^2 and E E' of that equation.
+    pub(super) fn equation(&self, rho: f64) -> [DMatrix<f64>; 3] {
         let c = self.whitened_output();
         let s = c.transpose() * c - &self.q / rho.powi(2);
         let a = self.channel.a.transpose();
-        stabilising_solution(&a, &s, &(&self.e * self.e.transpose()))
+        [a, s, &self.e * self.e.transpose()]
     }
 
     /// L = -X C' N^-2.
@@ -69,12 +78,14 @@ impl ObserverProblem {
         -x * self.whitened_output().transpose() * self.noise_inverse()
     }
 
-    fn noise_inverse(&self) -> DMatrix<f64> {
-        diagonal(&self.noise.map(f64::recip))
+    /// N^-1.
+    pub(super) fn noise_inverse(&self) -> DMatrix<f64> {
+        let inverses = self.noise.iter().map(|nu| nu.recip());
+        diagonal(&inverses.collect::<Vec<_>>())
     }
 
     /// N^-1 C.
-    fn whitened_output(&self) -> DMatrix<f64> {
+    pub(super) fn whitened_output(&self) -> DMatrix<f64> {
         self.noise_inverse() * &self.channel.c
     }
 

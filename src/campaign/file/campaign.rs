@@ -4,8 +4,8 @@
 use super::value::{some_table, table, tables};
 use super::{
     AgentFile, ControlFile, CouplingFile, DisturbanceFile, FaultFile, InitialFile, OutputFile,
-    ReferenceFile, RequireFile, SamplingFile, StopFile, StratumFile, SynthesisFile, TimeFile,
-    TuneFile, VerdictFile,
+    ReferenceFile, RequireFile, SamplingFile, SensorsFile, StopFile, StratumFile, SynthesisFile,
+    TimeFile, TuneFile, VerdictFile,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -159,5 +159,8 @@ campaign_and_group! {
         /// What counts as failure.
         #[serde(default, deserialize_with = "some_table")]
         verdict: Option<VerdictFile>,
+        /// Sensors that are not three of each channel.
+        #[serde(default, deserialize_with = "some_table")]
+        sensors: Option<SensorsFile>,
     }
 }

@@ -5,6 +5,7 @@ mod campaign;
 mod disturbances_and_faults;
 mod parameters;
 mod plan;
+mod sensors;
 mod tune;
 mod value;
 
@@ -14,6 +15,7 @@ pub(super) use parameters::Parameters;
 pub use plan::{
     DesignFile, OutputFile, RequireFile, SamplingFile, StopFile, StratumFaultsFile, StratumFile,
 };
+pub use sensors::{ChannelSensorsFile, SensorFile, SensorsFile};
 pub use tune::{Texts, TuneFile};
 pub(super) use value::in_toml;
 pub use value::{

@@ -105,6 +105,7 @@ impl Begun<'_> {
             first_fault: 0,
             team,
             reference: check.reference(&file.reference, team, &agent)?,
+            sensors: check.sensors(file.sensors.as_ref(), &agent, &synthesis)?,
             synthesis,
             mass_scale: scale("agent.mass_scale", &file.agent.mass_scale)?,
             inertia_scale: scale("agent.inertia_scale", &file.agent.inertia_scale)?,

@@ -10,6 +10,7 @@ mod plan;
 mod reference;
 mod requirement;
 mod sampling;
+mod sensors;
 mod synthesis;
 mod timing;
 mod tune;

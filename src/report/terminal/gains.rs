@@ -4,7 +4,7 @@ use crate::campaign::{AgentGroup, Campaign, SYNTHESIZED};
 use crate::controllers::{self, GainSet, SimulatedController, synthesized};
 use crate::report::page::document::{Block, Cell, Document, Grid, Section};
 use crate::report::page::text::text;
-use crate::synthesis::{ChannelSynthesis, ControllerGains};
+use crate::synthesis::{ChannelSynthesis, Check, ControllerGains};
 
 /// The gains of a campaign, a set of each group of agents, and what is known about them.
 pub fn gains(campaign: &Campaign, gains: &[GainSet]) -> String {
@@ -124,7 +124,13 @@ fn proof(findings: &controllers::Findings) -> Vec<Block> {
             solved.step, solved.status, solved.iterations
         )
     });
-    let checks = findings.checks.iter().map(|check| {
+    let texts = certificate.chain(solver).map(Block::Text);
+    texts.chain([checks(&findings.checks)]).collect()
+}
+
+/// What was checked.
+pub(super) fn checks(checks: &[Check]) -> Block {
+    let rows = checks.iter().map(|check| {
         let passed = if check.passed { "ok" } else { "FAILED" };
         vec![
             Cell::text("check"),
@@ -135,10 +141,8 @@ fn proof(findings: &controllers::Findings) -> Vec<Block> {
             )),
         ]
     });
-    let checks = Block::Grid(Grid {
+    Block::Grid(Grid {
         head: Vec::new(),
-        rows: checks.collect(),
-    });
-    let texts = certificate.chain(solver).map(Block::Text);
-    texts.chain([checks]).collect()
+        rows: rows.collect(),
+    })
 }
