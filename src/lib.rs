@@ -17,6 +17,7 @@
 //! | [`campaign`] | the campaign file, read and validated into a [`campaign::Campaign`] |
 //! | [`controllers`] | from a campaign to the gains of every controller: synthesized, or read from a file |
 //! | [`draw`] | the random quantities of one episode |
+//! | [`mission`] | what teams decide while they search and rescue: allocation, ways, behaviour, and what comes of it |
 //! | [`model`] | the equations of one episode, generic over the lane type; `shaders/` are their twins |
 //! | [`backend`] | the model on many episodes: SIMD lanes on all cores, or a GPU |
 //! | [`results`] | tables by episode, and every statistic on them |
@@ -79,6 +80,8 @@ pub mod campaign;
 pub mod controllers;
 
 pub mod draw;
+
+pub mod mission;
 
 pub mod model;
 

@@ -90,6 +90,17 @@ pub struct ChannelGroup {
     pub channels: Range<usize>,
 }
 
+/// Channels that may share sensors.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SensorGroup {
+    /// Its name in campaign files.
+    pub name: &'static str,
+    /// Which of the agent's channels.
+    pub channels: Range<usize>,
+    /// Which of the agent's channel groups they belong to.
+    pub place: usize,
+}
+
 impl Agent {
     /// What so many of them are called.
     #[must_use]
@@ -199,6 +210,26 @@ impl Agent {
                 group(ChannelRole::Attitude, FIRST_ATTITUDE..UAV_CHANNELS.len()),
             ],
             Self::Biped(_) => vec![group(ChannelRole::Joints, 0..JOINTS)],
+        }
+    }
+
+    /// The groups of channels that may share sensors: within one the plant and its kernels know all channels.
+    #[must_use]
+    pub fn sensor_groups(&self) -> Vec<SensorGroup> {
+        let group = |name, channels, place| SensorGroup {
+            name,
+            channels,
+            place,
+        };
+        match self {
+            Self::Uav(_) => vec![
+                group("position", 0..FIRST_ATTITUDE, 0),
+                group("attitude", FIRST_ATTITUDE..UAV_CHANNELS.len(), 1),
+            ],
+            Self::Biped(_) => vec![
+                group("left-leg", 0..LEG_JOINTS, 0),
+                group("right-leg", LEG_JOINTS..JOINTS, 0),
+            ],
         }
     }
 }

@@ -40,7 +40,7 @@ use urts_mc::backend::cpu::{Precision, Simd};
 use urts_mc::backend::gpu::adapters;
 use urts_mc::campaign::Campaign;
 use urts_mc::campaign::lints::cautions;
-use urts_mc::controllers::GainSet;
+use urts_mc::controllers::{FullOrderFile, GainSet, full_order};
 use urts_mc::report::paper::{claim_dir, paper};
 use urts_mc::report::{Length, columns, columns_chapter, report, terminal, trace, tuning};
 use urts_mc::results::can_be_judged;
@@ -287,6 +287,13 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
         return synthesize_preset(arguments);
     };
     let campaign = Campaign::load_with(path, &arguments.set)?;
+    if campaign
+        .groups()
+        .iter()
+        .any(|group| !group.sensors.is_empty())
+    {
+        return synthesize_shared_sensors(&campaign, arguments.json);
+    }
     let shown = ProgressLine::of_work("synthesizing gains", false);
     let gains = GainSet::of_groups(&campaign);
     drop(shown);
@@ -295,6 +302,20 @@ fn synthesize_command(arguments: &SynthesizeArguments) -> Result<Code, Failure> 
         print_json(&GainSet::to_file(&campaign, &gains))?;
     } else {
         print(&terminal::gains(&campaign, &gains))?;
+    }
+    Ok(Code::Done)
+}
+
+/// The controllers of the channels that share sensors, and no others.
+fn synthesize_shared_sensors(campaign: &Campaign, json: bool) -> Result<Code, Failure> {
+    let shown = ProgressLine::of_work("synthesizing gains of channels that share sensors", false);
+    let found: Result<Vec<_>, _> = campaign.groups().iter().map(full_order).collect();
+    drop(shown);
+    let found = found?;
+    if json {
+        print_json(&FullOrderFile::of(campaign, &found))?;
+    } else {
+        print(&terminal::full_order(campaign, &found))?;
     }
     Ok(Code::Done)
 }

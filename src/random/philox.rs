@@ -60,6 +60,10 @@ pub enum Stream {
     Search = 10,
     /// The seeds of episodes that are drawn beside a campaign's own.
     Seed = 11,
+    /// The world of a mission: targets, obstacles, thresholds of detection, endurance.
+    Mission = 12,
+    /// The samples of a mission's path planner.
+    Plan = 13,
 }
 
 /// Where a random number lives inside its campaign's seed.

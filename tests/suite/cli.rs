@@ -19,6 +19,7 @@ mod output;
 mod parts;
 mod results;
 mod robot;
+mod sensors;
 mod settings;
 mod shards;
 mod slurm;

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms of the library and the program's own.
-const MOST_ROOMS: usize = 16;
+const MOST_ROOMS: usize = 17;
 const MOST_LINES_OF_A_FILE: usize = 450;
 const MOST_LINES_OF_A_FUNCTION: usize = 80;
 /// Columns of a comment.
@@ -28,7 +28,7 @@ struct Source {
 }
 
 #[test]
-fn the_rooms_are_at_most_sixteen_and_use_only_those_before_them() {
+fn the_rooms_are_at_most_seventeen_and_use_only_those_before_them() {
     let rooms = rooms();
     assert!(
         rooms.len() <= MOST_ROOMS,

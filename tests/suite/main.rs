@@ -9,6 +9,7 @@
 //! | `synthesis` | gains, certificates and margins against an independent implementation; the linear algebra under the solver |
 //! | `campaign` | every shipped campaign; settings laid over a file |
 //! | `draw` | sampling designs in campaigns; names of faults, and which episodes meet which |
+//! | `mission` | decisions of missions against an independent implementation, closed forms and their invariants |
 //! | `model` | the closed loop against independent trajectories; every fault, disturbance and option against its definition; robots, lanes, metrics |
 //! | `backend` | the same bytes for any thread count, width and length; the shaders against the CPU, and changed shaders that must be noticed |
 //! | `results` | what is said of each stratum, against numbers worked out by hand; what the conditions of an episode do to its outcome |
@@ -42,6 +43,7 @@ mod campaign;
 mod cli;
 mod draw;
 mod house;
+mod mission;
 mod model;
 mod random;
 mod readers;

@@ -16,6 +16,7 @@ use urts_mc::synthesis::{
 
 mod certificate;
 mod designs;
+mod full_order;
 mod lapack;
 mod loop_form;
 mod pid_shape;
