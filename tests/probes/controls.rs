@@ -92,6 +92,12 @@ const CONTROLS: &[Control] = &[
         "atan2",
     ),
     control(
+        "philox",
+        "product0.x ^ x.w ^ k.y",
+        "product0.x ^ x.w ^ k.x",
+        "philox4x32",
+    ),
+    control(
         "wide_product",
         "(second >> 16u)",
         "(second >> 17u)",

@@ -282,7 +282,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
             "run",
             "turns",
             "turns_from_words",
-            "first_lane",
+            "of_lane",
         ],
         "lanes alone",
     ),
@@ -321,6 +321,7 @@ const IN_RUST_ALONE: &[(&[&str], &str)] = &[
         &["always", "sound", "onset_step", "words_of"],
         "how draws become words and constants",
     ),
+    (&["signals"], "an invocation has the signals of one agent"),
     (
         &["carries", "distorts", "remembers", "is_restless", "of"],
         "constants of the shader",
