@@ -16,8 +16,8 @@ struct Leg {
 
 alias Plant = Leg;
 
-// Whose invocations work out the bias of a leg, and factor and solve. Groups of 32 and of 64 invocations hold joints that
-// follow each other, so these lie in different ones.
+// Whose invocations work out the bias of a leg, and factor and solve. Groups of 32 and of 64 invocations hold joints
+// that follow each other, so these lie in different ones (for teams of 1, 2 and 4).
 const BIASING_JOINT = 0u;
 const SOLVING_JOINT = 3u;
 

@@ -46,8 +46,9 @@ pub(crate) struct EngineArguments {
         verbatim_doc_comment
     )]
     pub(crate) precision: PrecisionChoice,
-    /// Layout of the CPU's episodes; avx2 and avx512 give the same result,
-    /// and in f64 all do
+    /// Layout of the CPU's episodes; all give the same result in f64, in f32
+    /// avx2 and avx512
+    /// do
     #[arg(
         long,
         value_enum,

@@ -12,7 +12,7 @@ use crate::model::plant::biped::{LegPlant, matrix_row, plus_product};
 use crate::model::plant::leg::{LEG_JOINTS, LegJoint, LegModel, LegUniforms, forward_dynamics};
 use std::path::Path;
 
-/// `found`: the accelerations of a leg of a `model` at `q`, `rate` and `torque`, its parts put together as the joints do.
+/// `found`: the accelerations of a leg of a `model` at `q`, `rate` and `torque`, put together as the joints do it.
 const DYNAMICS: &str = "
     var given_q = q;
     var given_rate = rate;

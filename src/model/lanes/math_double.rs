@@ -124,7 +124,7 @@ const fn convergent() -> ([f64; 5], [f64; 6]) {
     (numerator, denominator)
 }
 
-/// A phase, a fraction of a turn in 64-bit fixed point, folded to [-1, 1] such that its sine is that of pi/2 times this.
+/// A phase, a fraction of a turn in 64-bit fixed point, folded to [-1, 1]: its sine is that of pi/2 times this.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_wrap,

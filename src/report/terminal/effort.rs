@@ -47,8 +47,8 @@ pub(super) fn seconds(campaign: &Campaign) -> f64 {
     campaign.groups().iter().map(of_group).sum()
 }
 
-/// Nanoseconds of a core for a byte of a large table, for its row to be made, packed, written and hashed: what 1,000,000
-/// episodes of uav-paper took longer in detail "all" than in "episodes".
+/// Nanoseconds of a core for a byte of a large table, for its row to be made, packed, written and hashed: what
+/// 1,000,000 episodes of uav-paper took longer in detail "all" than in "episodes".
 const TABLE_BYTE: f64 = 75.0;
 
 /// How long it takes to make large tables of so many bytes, on one core, s.

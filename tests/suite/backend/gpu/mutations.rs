@@ -216,8 +216,8 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "the last episode of a workgroup does not move",
-        "if own.channel == 0u {",
-        "if own.channel == 0u && own.lane < LANES - 1u {",
+        "if own.channel == BIASING_JOINT {",
+        "if own.channel == BIASING_JOINT && own.lane < LANES - 1u {",
     ),
     (
         "the observer is not told of torques beyond the limit",
@@ -231,12 +231,12 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "two joints change accelerations",
-        "3u, own.agent, acceleration[3]",
-        "3u, own.agent, acceleration[2]",
+        "3u, own.agent, values[3]",
+        "3u, own.agent, values[2]",
     ),
     (
         "joints are not damped",
-        "fma(rate, -joint.lever.w, torque)",
+        "fma(rate, -damping, torque)",
         "torque",
     ),
     (

@@ -12,6 +12,7 @@ use urts_mc::model::episode::{AgentOutcome, Model};
 use urts_mc::model::lanes::Lane;
 #[cfg(target_arch = "x86_64")]
 use urts_mc::model::lanes::simd::{F32x8, F32x16};
+use urts_mc::model::metric::ChannelOutcome;
 
 fn simulated(
     campaign: &Campaign,
@@ -48,6 +49,14 @@ fn eight_and_sixteen_robots_side_by_side_give_the_same_bits() {
     }
 }
 
+/// The outcomes of all channels.
+fn channels_of(simulated: &mut [EpisodeResult]) -> impl Iterator<Item = &mut ChannelOutcome> {
+    let agents = simulated
+        .iter_mut()
+        .flat_map(|own| own.outcomes.iter_mut().flatten());
+    agents.flat_map(|agent| agent.channels.iter_mut())
+}
+
 #[test]
 fn the_reference_has_the_same_bits_in_every_layout() {
     let robots = ["full", "limited"].map(everything);
@@ -56,7 +65,11 @@ fn the_reference_has_the_same_bits_in_every_layout() {
         let campaign = campaign.with(|own| own.controllers.truncate(1));
         let [scalar, others @ ..] = Simd::ALL;
         let results = |simd| -> Vec<String> {
-            let simulated = simulated(&campaign, Precision::F64, Some(simd), 0..9);
+            let mut simulated = simulated(&campaign, Precision::F64, Some(simd), 0..9);
+            for channel in channels_of(&mut simulated) {
+                // Of an agent without a fault this means nothing, and no table has it.
+                channel.last_outside_before_fault = None;
+            }
             let outcomes = simulated.iter().map(|own| format!("{:?}", own.outcomes));
             outcomes.collect()
         };
