@@ -251,7 +251,7 @@ const BIPED: [Mutation; 19] = [
     ),
     (
         "the torque of an ankle does not reach the knee",
-        "b3210 = fma(l5, vec4(-b5), b3210);",
+        "b3210 = fma(factors.l5, vec4(-b5), b3210);",
         "",
     ),
 ];
