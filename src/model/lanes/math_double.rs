@@ -1,5 +1,6 @@
-//! Elementary functions of the double-precision lanes: the reference has the same bits on every machine, whatever its
-//! standard library makes of them, and in every layout.
+//! Elementary functions of the double-precision lanes: in every layout, the episode loop of the reference has the same
+//! bits, whatever the standard library of a machine makes of them. (References and the constants of turbulence are
+//! still the standard library's.)
 //!
 //! The polynomials interpolate at Chebyshev nodes (near minimax); the error of each, before rounding, is stated beside
 //! it. With the roundings the functions are good to some units in the last place, which is tested.
